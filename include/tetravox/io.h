@@ -1,0 +1,52 @@
+#pragma once
+
+/// Files in and pictures out.
+///
+/// Foreign formats are read by a child process (`tetravox-reader`) that hands its arrays over through shared memory:
+/// when it crashes, hangs or eats too much memory, that is an `Error` here and nothing else.
+
+#include "tetravox/dataset.h"
+#include "tetravox/image.h"
+#include "tetravox/progress.h"
+#include "tetravox/scene.h"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetravox {
+
+struct ReadOptions {
+  ArrayRequest array;
+  TimeRequest time;
+  std::string grid_file;           ///< PLOT3D: solution (Q) file that goes with the grid
+  double timeout = 600.0;          ///< seconds that the reader may take
+  std::uint64_t memory_limit = 0;  ///< bytes that the reader may take; 0: what the machine has free
+  bool only_info = false;          ///< leave `Dataset::mesh` empty
+};
+
+/// Reads a file of any format in `reader_names()`, or makes a "builtin:" dataset. Everything that comes back is
+/// validated.
+/// @throws Error that names the file; see ErrorCode.
+Dataset read_dataset(const std::string& path, const ReadOptions& options = {}, const Progress& progress = {});
+
+/// Formats that can be read: name, and file endings with a remark.
+std::vector<std::pair<std::string, std::string>> reader_names();
+
+struct WriteOptions {
+  Color background{0, 0, 0};
+  bool use_alpha = false;  ///< PNG: keep transparency instead of compositing over the background
+  int bit_depth = 8;       ///< PNG: 8 or 16
+  std::string scene;       ///< scene file's text, kept as metadata in PNG and EXR
+};
+
+/// Writes a picture by its ending: .png, .exr (float, premultiplied) or .npy (float32 [height][width][4],
+/// premultiplied). Writes to a temporary name beside it, then renames: never half a file.
+/// @throws Error (kCannotWrite, kInvalidArgument for an unknown ending).
+void write_image(const std::string& path, const Image& image, const WriteOptions& options = {});
+
+/// The scene kept in a PNG or EXR that tetravox wrote; empty where there is none.
+std::string read_image_scene(const std::string& path);
+
+}  // namespace tetravox

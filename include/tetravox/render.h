@@ -1,0 +1,102 @@
+#pragma once
+
+/// Prepared mesh + optical function + camera -> picture, on the CPU.
+///
+/// The one-call function is `render`. `Renderer` keeps what can be kept between frames.
+
+#include "tetravox/camera.h"
+#include "tetravox/image.h"
+#include "tetravox/mesh.h"
+#include "tetravox/progress.h"
+#include "tetravox/transfer_function.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetravox {
+
+/// Where segments come from. `kWalk`: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003).
+enum class Source { kWalk };
+
+/// What turns a segment into colour and opacity.
+enum class Integrator {
+  kAntiderivative,  ///< tables of antiderivatives, split where the error estimate asks (default)
+  kPartial,         ///< exact for piecewise linear functions (Moreland and Angel 2004; Espinha and Celes 2005)
+  kPost             ///< N point samples a segment, for comparison
+};
+
+inline constexpr int kLargestResolution = 16384;
+
+struct RenderSettings {
+  int width = 512;  ///< pixels, in [1, kLargestResolution]
+  int height = 512;
+  Source source = Source::kWalk;
+  Integrator integrator = Integrator::kAntiderivative;
+  double tolerance = 5e-4;                ///< error in colour that one segment may add (antiderivative)
+  int samples = 8;                        ///< samples a segment (post), in [1, 4096]
+  bool use_early_ray_termination = true;  ///< stop a ray when no 8-bit pixel over any background can change
+  int threads = 0;                        ///< 0: all cores
+  std::string instruction_set;            ///< "": the best there is; otherwise one of `instruction_sets()`
+};
+
+struct RenderStatistics {
+  double seconds = 0.0;
+  std::uint64_t segments = 0;      ///< ray-cell segments, as walked
+  std::uint64_t rays = 0;          ///< rays that met the mesh
+  std::uint64_t stopped_rays = 0;  ///< rays stopped by the bound on steps (damaged meshes only)
+  int threads = 0;
+  std::string instruction_set;
+};
+
+/// Names of enumerators as on the command line and in scene files ("walk"; "antiderivative", "partial", "post"), and
+/// back.
+std::string name_of(Source source);
+std::string name_of(Integrator integrator);
+/// @throws Error (kInvalidArgument) that lists the names there are.
+Source source_from_name(const std::string& name);
+Integrator integrator_from_name(const std::string& name);
+/// Names, one-line descriptions with the paper.
+std::vector<std::pair<std::string, std::string>> source_names();
+std::vector<std::pair<std::string, std::string>> integrator_names();
+
+/// The instruction sets compiled in and supported by this machine, best first.
+std::vector<std::string> instruction_sets();
+
+/// Draws one mesh many times. Views the mesh, which must outlive it. Not safe for concurrent calls; use one for each
+/// thread.
+class Renderer {
+ public:
+  explicit Renderer(const PreparedMesh& mesh);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  /// One pass over a 1D table, under a millisecond.
+  /// @throws Error (kInvalidArgument) as `make_optical_function` does.
+  void set_transfer_function(const OpticalFunction& function);
+
+  /// The picture. The same bytes for any number of threads, on every run and with every instruction set.
+  /// @throws Error: kInvalidArgument for settings or camera out of range, kOutOfMemory, kCancelled.
+  Image render(const Camera& camera, const RenderSettings& settings, RenderStatistics* statistics = nullptr,
+               const Progress& progress = {});
+
+  /// Bytes held for the camera's frame and the tables.
+  std::uint64_t bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// One call for one picture; see `Renderer`.
+Image render(const PreparedMesh& mesh, const OpticalFunction& function, const Camera& camera,
+             const RenderSettings& settings = {});
+
+/// Bytes that rendering needs beside the prepared mesh: the camera's vertices, tables, picture. Upper estimate.
+std::uint64_t estimate_render_memory(std::uint64_t vertices, std::uint64_t boundary_faces,
+                                     const RenderSettings& settings);
+
+}  // namespace tetravox
