@@ -1,0 +1,58 @@
+# The few commands of the house; CMake does the work (CMakePresets.json).
+
+PREFIX ?= /usr/local
+JOBS ?= $(shell nproc)
+BUILD := build/release
+TETRAVOX := $(BUILD)/bin/tetravox
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test bench build install format check gallery clean
+
+help:
+	@echo "make demo      draw three embedded datasets into out/demo"
+	@echo "make test      build everything and run all tests"
+	@echo "make bench     measure against VTK: tables in out/bench (QUICK=1: two minutes)"
+	@echo "make build     build the tool: $(TETRAVOX)"
+	@echo "make install   install tool, library and CMake package (PREFIX=$(PREFIX))"
+	@echo "make gallery   draw the pictures of the README again"
+	@echo "make format    format all C++"
+	@echo "make check     formatting and include rules"
+	@echo "make clean     remove build/release and out"
+	@echo "demo, test, bench and build first install what is missing: tools/install_dependencies.sh"
+
+# A tree that was never configured leaves out the tests, so that a build needs no test packages.
+build:
+	@tools/install_dependencies.sh build
+	@test -f $(BUILD)/build.ninja || cmake --preset release -DTETRAVOX_WITH_TESTS=OFF -DTETRAVOX_WITH_BENCH=OFF
+	@cmake --build --preset release --parallel $(JOBS) --target product
+
+demo: build
+	@tools/draw_pictures.sh demo $(TETRAVOX) out/demo
+
+gallery: build
+	@tools/draw_pictures.sh gallery $(TETRAVOX) docs/images
+
+test:
+	@tools/install_dependencies.sh build test
+	@cmake --preset release -DTETRAVOX_WITH_TESTS=ON
+	@cmake --build --preset release --parallel $(JOBS)
+	@ctest --preset release --parallel $(JOBS)
+
+bench:
+	@tools/install_dependencies.sh build bench
+	@cmake --preset release -DTETRAVOX_WITH_TESTS=OFF -DTETRAVOX_WITH_BENCH=ON
+	@cmake --build --preset release --parallel $(JOBS) --target product export_builtin
+	@/usr/bin/python3 bench/run.py --build $(BUILD) $(if $(QUICK),--quick)
+
+install: build
+	@cmake --install $(BUILD) --prefix $(PREFIX)
+
+format:
+	@tools/check_format.sh --fix
+
+check:
+	@tools/check_format.sh
+	@python3 tools/check_includes.py
+
+clean:
+	@rm -rf $(BUILD) out

@@ -1,0 +1,51 @@
+# Installs a build into an empty prefix, then configures, builds and runs examples/minimal against that prefix alone.
+#
+#   cmake -DBUILD_DIR=.. -DSOURCE_DIR=.. -DWORK_DIR=.. [-DWITH_IO=ON] -P install_test.cmake
+
+cmake_minimum_required(VERSION 3.25)
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "failed (${result}): ${command}\n${output}")
+  endif()
+endfunction()
+
+function(require_file pattern)
+  file(GLOB_RECURSE found ${WORK_DIR}/prefix/${pattern})
+  if(NOT found)
+    message(FATAL_ERROR "not installed: ${pattern}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK_DIR})
+file(MAKE_DIRECTORY ${WORK_DIR})
+run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
+require_file(include/tetravox/render.h)
+require_file(share/doc/tetravox/LICENSE)
+if(WITH_IO)
+  require_file(include/tetravox/io.h)
+  require_file(bin/tetravox)
+  require_file(libexec/tetravox-reader)
+endif()
+
+# Installed files must not point back into the source or build tree.
+file(GLOB_RECURSE package_files ${WORK_DIR}/prefix/*.cmake)
+foreach(package_file IN LISTS package_files)
+  file(READ ${package_file} text)
+  string(FIND "${text}" "${SOURCE_DIR}/" position)
+  if(NOT position EQUAL -1)
+    message(FATAL_ERROR "${package_file} names the source tree ${SOURCE_DIR}")
+  endif()
+endforeach()
+
+# From here on a message of the compiler or the program is what a user would see.
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples/minimal -B ${WORK_DIR}/minimal -G Ninja -DCMAKE_BUILD_TYPE=Release
+  -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/minimal)
+run(${WORK_DIR}/minimal/minimal)
+if(WITH_IO)
+  run(${WORK_DIR}/prefix/bin/tetravox render builtin:sphere --resolution 64,48 -o ${WORK_DIR}/sphere.png)
+  require_file(../sphere.png)
+endif()
