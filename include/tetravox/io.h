@@ -43,10 +43,25 @@ struct WriteOptions {
 
 /// Writes a picture by its ending: .png, .exr (float, premultiplied) or .npy (float32 [height][width][4],
 /// premultiplied). Writes to a temporary name beside it, then renames: never half a file.
-/// @throws Error (kCannotWrite, kInvalidArgument for an unknown ending).
-void write_image(const std::string& path, const Image& image, const WriteOptions& options = {});
+/// @throws Error: kCannotWrite, kInvalidArgument for an unknown ending, kCancelled.
+void write_image(const std::string& path, const Image& image, const WriteOptions& options = {},
+                 const Progress& progress = {});
+
+/// The endings that `write_image` knows, with a remark.
+std::vector<std::pair<std::string, std::string>> image_writer_names();
 
 /// The scene kept in a PNG or EXR that tetravox wrote; empty where there is none.
+/// @throws Error: kFileNotFound, kBadFile for what is no picture, kInvalidArgument for another ending.
 std::string read_image_scene(const std::string& path);
+
+/// The scene, and for a PNG also `use_alpha` and `bit_depth`, that a picture was written with; throws as above.
+WriteOptions read_image_options(const std::string& path);
+
+/// Writes a text file in the same way: all of it or nothing. @throws Error (kCannotWrite).
+void write_text_file(const std::string& path, const std::string& text);
+
+/// Bytes that this process may still allocate without swapping or the OOM killer (limits of the machine and its control
+/// groups).
+std::uint64_t available_memory();
 
 }  // namespace tetravox

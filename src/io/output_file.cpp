@@ -17,15 +17,21 @@ namespace {
 /// What a user can do about a failure to write.
 std::string advice(int error) {
   switch (error) {
-    case ENOENT: return "; make the directory first, or choose another name";
-    case ENOTDIR: return "; a part of the path is a file";
+    case ENOENT:
+      return "; make the directory first, or choose another name";
+    case ENOTDIR:
+      return "; a part of the path is a file";
     case EACCES:
     case EPERM:
-    case EROFS: return "; choose a place that you may write to";
-    case EISDIR: return "; name a file in it";
+    case EROFS:
+      return "; choose a place that you may write to";
+    case EISDIR:
+      return "; name a file in it";
     case ENOSPC:
-    case EDQUOT: return "; free some space, or choose another disk";
-    default: return "";
+    case EDQUOT:
+      return "; free some space, or choose another disk";
+    default:
+      return "";
   }
 }
 
@@ -141,12 +147,6 @@ void OutputFile::commit() {
 void OutputFile::fail() const {
   const std::string reason = error_ == EINVAL ? "it is not a regular file" : std::generic_category().message(error_);
   throw Error(ErrorCode::kCannotWrite, "cannot write '" + path_ + "': " + reason + advice(error_));
-}
-
-void write_text_file(const std::string& path, std::string_view text) {
-  OutputFile file(path);
-  file.write(text.data(), text.size());
-  file.commit();
 }
 
 }  // namespace tetravox::io

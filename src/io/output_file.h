@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <string>
-#include <string_view>
 
 namespace tetravox::io {
 
@@ -32,23 +31,21 @@ class OutputFile {
   /// Gives the file its name. @throws Error (kCannotWrite).
   void commit();
 
-  /// @throws Error (kCannotWrite) that names the file and the reason of the last failure.
+  bool has_failed() const noexcept { return error_ != 0; }
+  /// @throws Error (kCannotWrite) that names the file and the reason of the first failure.
   [[noreturn]] void fail() const;
 
  private:
   void open();
   std::string temporary_name(const std::string& directory) const;
 
-  std::string path_;        ///< as the user gave it, for messages
-  std::string target_;      ///< with a symbolic link resolved
-  std::string directory_;   ///< of the target
-  std::string temporary_;   ///< empty while the file has no name
-  int permissions_ = -1;    ///< of the file that is replaced
-  int error_ = 0;           ///< errno of the first failure
+  std::string path_;       ///< as the user gave it, for messages
+  std::string target_;     ///< with a symbolic link resolved
+  std::string directory_;  ///< of the target
+  std::string temporary_;  ///< empty while the file has no name
+  int permissions_ = -1;   ///< of the file that is replaced
+  int error_ = 0;          ///< errno of the first failure
   std::FILE* file_ = nullptr;
 };
-
-/// Writes `text` as the whole of a file. @throws Error (kCannotWrite).
-void write_text_file(const std::string& path, std::string_view text);
 
 }  // namespace tetravox::io
