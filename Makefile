@@ -42,7 +42,7 @@ bench:
 	@tools/install_dependencies.sh build bench
 	@cmake --preset release -DTETRAVOX_WITH_TESTS=OFF -DTETRAVOX_WITH_BENCH=ON
 	@cmake --build --preset release --parallel $(JOBS) --target product export_builtin
-	@/usr/bin/python3 bench/run.py --build $(BUILD) $(if $(QUICK),--quick)
+	@/usr/bin/python3 bench/run.py --build $(BUILD) $(if $(QUICK),--quick) $(if $(README),--readme $(README))
 
 install: build
 	@cmake --install $(BUILD) --prefix $(PREFIX)

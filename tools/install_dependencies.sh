@@ -49,19 +49,22 @@ done
 [ "${TETRAVOX_SKIP_DEPENDENCIES:-}" = 1 ] && exit 0
 
 declare -A reasons=()
+needed=()
 while read -r group package reason; do
-  [ -n "$group" ] && [[ "$wanted" == *" $group "* ]] && : "${reasons[$package]:=$reason}"
+  [ -n "$group" ] && [[ "$wanted" == *" $group "* ]] && [ -z "${reasons[$package]:-}" ] || continue
+  reasons[$package]=$reason
+  needed+=("$package")
 done <<<"$packages"
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-  fail "this is no Debian-like system: install the counterparts of ${!reasons[*]}," \
+  fail "this is no Debian-like system: install the counterparts of ${needed[*]}," \
     "then set TETRAVOX_SKIP_DEPENDENCIES=1"
 fi
 
 # One query for all; packages it has never heard of make it fail, and are missing too.
-installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${!reasons[@]}" 2>/dev/null || true)
+installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${needed[@]}" 2>/dev/null || true)
 missing=()
-for package in "${!reasons[@]}"; do
+for package in "${needed[@]}"; do
   [[ $'\n'"$installed"$'\n' == *$'\n'"installed $package"$'\n'* ]] || missing+=("$package")
 done
 [ ${#missing[@]} -eq 0 ] && exit 0

@@ -1,0 +1,44 @@
+"""Runs the command line tool and reads its statistics."""
+import json
+import os
+import subprocess
+import time
+
+
+class Failed(Exception):
+    """What a program said when it did not do what it was asked."""
+
+
+class Tool:
+    def __init__(self, build, work):
+        self.program = os.path.join(build, "bin", "tetravox")
+        self.exporter = os.path.join(build, "bin", "export_builtin")
+        self.work = work
+        if not os.path.exists(self.program):
+            raise SystemExit(f"{self.program} is missing: run 'make build'")
+
+    def path(self, name):
+        return os.path.join(self.work, name)
+
+    def run(self, command, timeout=600):
+        """Seconds from the shell to the end of the program."""
+        start = time.perf_counter()
+        done = subprocess.run(command, capture_output=True, text=True, timeout=timeout)
+        seconds = time.perf_counter() - start
+        if done.returncode != 0:
+            raise Failed((done.stderr or done.stdout).strip().split("\n")[-1])
+        return seconds
+
+    def render(self, scene, *options, output="picture.npy"):
+        """Draws; returns the statistics with `wall`, seconds from the shell to the picture."""
+        statistics = self.path("statistics.json")
+        command = [self.program, "render", scene, "-o", self.path(output), "--statistics", statistics, *options]
+        wall = self.run(command)
+        with open(statistics) as file:
+            return dict(json.load(file), wall=wall)
+
+    def export(self, builtin, name):
+        """Path of the embedded dataset as VTU."""
+        path = self.path(name)
+        self.run([self.exporter, builtin, path])
+        return path
