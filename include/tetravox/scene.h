@@ -20,7 +20,8 @@ struct TimeRequest {
 };
 
 struct SceneData {
-  std::string file;  ///< a path, relative to the scene file or absolute, or "builtin:NAME"
+  std::string file;           ///< a path, relative to the scene file or absolute, or "builtin:NAME"
+  std::string solution_file;  ///< PLOT3D: the solution (Q) that goes with the grid `file`; otherwise empty
   ArrayRequest array;
   TimeRequest time;
 };
