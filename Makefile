@@ -21,9 +21,12 @@ help:
 	@echo "demo, test, bench and build first install what is missing: tools/install_dependencies.sh"
 
 # A tree that was never configured leaves out the tests, so that a build needs no test packages.
+CONFIGURE = cmake --preset release \
+  $(if $(wildcard $(BUILD)/build.ninja),,-DTETRAVOX_WITH_TESTS=OFF -DTETRAVOX_WITH_BENCH=OFF)
+
 build:
 	@tools/install_dependencies.sh build
-	@test -f $(BUILD)/build.ninja || cmake --preset release -DTETRAVOX_WITH_TESTS=OFF -DTETRAVOX_WITH_BENCH=OFF
+	@test -f $(BUILD)/build.ninja || $(CONFIGURE)
 	@cmake --build --preset release --parallel $(JOBS) --target product
 
 demo: build
@@ -44,8 +47,11 @@ bench:
 	@cmake --build --preset release --parallel $(JOBS) --target product export_builtin
 	@/usr/bin/python3 bench/run.py --build $(BUILD) $(if $(QUICK),--quick) $(if $(README),--readme $(README))
 
-install: build
-	@cmake --install $(BUILD) --prefix $(PREFIX)
+install:
+	@tools/install_dependencies.sh build
+	@$(CONFIGURE) -DCMAKE_INSTALL_PREFIX=$(PREFIX)
+	@cmake --build --preset release --parallel $(JOBS) --target product
+	@cmake --install $(BUILD)
 
 format:
 	@tools/check_format.sh --fix

@@ -18,9 +18,17 @@ endif()
 add_custom_target(product)
 add_dependencies(product ${TETRAVOX_LIBRARIES} ${TETRAVOX_PROGRAMS})
 
-# The run-time dispatch of the kernels lives in libhwy, which a program links at the end.
-set_property(TARGET tetravox_cpu APPEND PROPERTY
-  INTERFACE_LINK_LIBRARIES "$<INSTALL_INTERFACE:$<LINK_ONLY:PkgConfig::HWY>>")
+# Static libraries leave it to the program at the end to link what they are made of; tetravox-config.cmake finds it.
+function(tetravox_link_installed target)
+  foreach(dependency IN LISTS ARGN)
+    set_property(TARGET ${target} APPEND PROPERTY
+      INTERFACE_LINK_LIBRARIES "$<INSTALL_INTERFACE:$<LINK_ONLY:${dependency}>>")
+  endforeach()
+endfunction()
+tetravox_link_installed(tetravox_cpu PkgConfig::HWY)
+if(TETRAVOX_WITH_IO)
+  tetravox_link_installed(tetravox_io pugixml::pugixml PNG::PNG PkgConfig::OPENEXR)
+endif()
 
 install(TARGETS ${TETRAVOX_LIBRARIES} EXPORT tetravox-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT tetravox-targets NAMESPACE tetravox:: DESTINATION ${TETRAVOX_PACKAGE_DIR})
@@ -33,7 +41,7 @@ if(TETRAVOX_WITH_IO)
     install(TARGETS tetravox RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   endif()
   if(TARGET tetravox-reader)
-    install(TARGETS tetravox-reader RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR})
+    install(TARGETS tetravox-reader RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tetravox)
   endif()
 endif()
 

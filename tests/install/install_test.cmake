@@ -27,7 +27,7 @@ require_file(share/doc/tetravox/LICENSE)
 if(WITH_IO)
   require_file(include/tetravox/io.h)
   require_file(bin/tetravox)
-  require_file(libexec/tetravox-reader)
+  require_file(libexec/tetravox/tetravox-reader)
 endif()
 
 # Installed files must not point back into the source or build tree.
