@@ -1,0 +1,166 @@
+#include "src/optics/color_maps.h"
+#include "tetravox/error.h"
+#include "tetravox/transfer_function.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tetravox {
+namespace {
+
+// A ray across a cube is 58 hundredths of the diagonal long; most objects are a little thinner.
+constexpr double kRayLength = 50.0;
+constexpr double kOpticalDepth = 1.6;       // of a ray through everything
+constexpr double kLargestExtinction = 0.6;  // in a hundredth of the diagonal
+constexpr double kBodyExtinction = 0.03;    // where all is alike
+constexpr int kShellCount = 6;
+constexpr double kShellWidth = 0.22;  // half width, in distances between shells
+constexpr double kBodyShare = 0.10;   // extinction between the shells, relative to their peaks
+constexpr double kRarity = 0.75;      // 0: alike; 1: every value has the same share of the optical depth
+constexpr int kLargestLabelCount = 40;
+
+double opacity_from_extinction(double extinction) { return -std::expm1(-extinction); }
+
+/// Colours at u in [0, 1]: the hues of turbo without its dark ends, which would not show on black.
+Color color_at(double u, bool invert) {
+  static const std::vector<optics::ColorMapPoint> points = optics::color_map_points("turbo");
+  return optics::eval_color_map(points, std::lerp(0.09, 0.93, invert ? 1.0 - u : u));
+}
+
+std::vector<double> normalized(const std::vector<double>& counts) {
+  std::vector<double> shares(counts.size());
+  double total = 0.0;
+  for (const double count : counts) total += std::isfinite(count) && count > 0.0 ? count : 0.0;
+  if (!(total > 0.0) || !std::isfinite(total))
+    return std::vector<double>(counts.size(), 1.0 / static_cast<double>(counts.size()));
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    shares[i] = std::isfinite(counts[i]) && counts[i] > 0.0 ? counts[i] / total : 0.0;
+  return shares;
+}
+
+/// Smoothed by a Gaussian whose standard deviation is `sigma` bins; the sum stays.
+std::vector<double> smoothed(const std::vector<double>& shares, double sigma) {
+  const int radius = std::max(1, static_cast<int>(std::ceil(3.0 * sigma))), count = static_cast<int>(shares.size());
+  std::vector<double> result(shares.size());
+  for (int i = 0; i < count; ++i) {
+    double sum = 0.0, weights = 0.0;
+    for (int j = std::max(0, i - radius); j <= std::min(count - 1, i + radius); ++j) {
+      const double weight = std::exp(-0.5 * (i - j) * (i - j) / (sigma * sigma));
+      sum += weight * shares[static_cast<std::size_t>(j)];
+      weights += weight;
+    }
+    result[static_cast<std::size_t>(i)] = sum / weights;
+  }
+  return result;
+}
+
+/// Position of each bin in [0, 1]: half by value, half by the square root of how frequent values are, so that skewed
+/// data still has many colours.
+std::vector<double> positions(const std::vector<double>& shares) {
+  std::vector<double> u(shares.size());
+  double total = 0.0;
+  for (const double share : shares) total += std::sqrt(share);
+  double below = 0.0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double root = std::sqrt(shares[i]);
+    const double by_value = (static_cast<double>(i) + 0.5) / static_cast<double>(shares.size());
+    u[i] = 0.5 * by_value + 0.5 * (below + 0.5 * root) / total;
+    below += root;
+  }
+  return u;
+}
+
+/// Scales extinctions to the budget of optical depth, none above the largest.
+void fit_budget(const std::vector<double>& shares, std::vector<double>& extinctions) {
+  for (int pass = 0; pass < 8; ++pass) {
+    double mean = 0.0;
+    for (std::size_t i = 0; i < shares.size(); ++i) mean += shares[i] * extinctions[i];
+    if (!(mean > 0.0)) return;
+    const double scale = kOpticalDepth / (kRayLength * mean);
+    for (double& extinction : extinctions) extinction = std::min(extinction * scale, kLargestExtinction);
+  }
+}
+
+TransferFunction constant_function(double value, bool invert) {
+  TransferFunction function;
+  function.absorption = Absorption::kOpacity;
+  function.points = {{value, color_at(0.35, invert), opacity_from_extinction(kBodyExtinction)}};
+  return function;
+}
+
+/// Few separate values (labels, materials): a flat piece for each, with a step half way to the next.
+TransferFunction label_function(const Histogram& histogram, const std::vector<double>& shares,
+                                const std::vector<std::size_t>& labels, bool invert) {
+  std::vector<double> label_shares, extinctions;
+  for (const std::size_t bin : labels) {
+    label_shares.push_back(shares[bin]);
+    extinctions.push_back(std::pow(shares[bin] + 1e-4, -kRarity));
+  }
+  fit_budget(label_shares, extinctions);
+  const auto value_at = [&](double bin) {
+    return std::lerp(histogram.range.min, histogram.range.max,
+                     std::clamp(bin / static_cast<double>(shares.size()), 0.0, 1.0));
+  };
+  TransferFunction function;
+  function.absorption = Absorption::kOpacity;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const double u = labels.size() > 1 ? static_cast<double>(i) / static_cast<double>(labels.size() - 1) : 0.35;
+    const Color color = color_at(u, invert);
+    const double opacity = opacity_from_extinction(extinctions[i]);
+    const double bin = static_cast<double>(labels[i]);
+    const double begin = i == 0 ? 0.0 : 0.5 * (bin + static_cast<double>(labels[i - 1]) + 1.0);
+    const double end = i + 1 == labels.size() ? static_cast<double>(shares.size())
+                                              : 0.5 * (bin + static_cast<double>(labels[i + 1]) + 1.0);
+    function.points.push_back({value_at(begin), color, opacity});
+    function.points.push_back({value_at(end), color, opacity});
+  }
+  return function;
+}
+
+/// Bins that hold something, if they are few and each stands alone; otherwise nothing.
+std::vector<std::size_t> find_labels(const std::vector<double>& shares) {
+  std::vector<std::size_t> labels;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    if (!(shares[i] > 0.0)) continue;
+    if (!labels.empty() && labels.back() + 1 == i) return {};
+    if (labels.size() == kLargestLabelCount) return {};
+    labels.push_back(i);
+  }
+  return labels;
+}
+
+}  // namespace
+
+TransferFunction make_default_transfer_function(const Histogram& histogram, bool invert) {
+  if (histogram.counts.empty() || !std::isfinite(histogram.range.min) || !std::isfinite(histogram.range.max) ||
+      histogram.range.min > histogram.range.max)
+    throw Error(ErrorCode::kInvalidArgument, "a histogram needs bins and a finite range");
+  const std::vector<double> raw = normalized(histogram.counts);
+  if (!(histogram.range.max > histogram.range.min)) return constant_function(histogram.range.min, invert);
+  if (const std::vector<std::size_t> labels = find_labels(raw); !labels.empty() && raw.size() > 2)
+    return label_function(histogram, raw, labels, invert);
+
+  // Follow the histogram, smoothed: shells at equal steps of position, on a faint body, the thinner the more frequent.
+  const std::vector<double> shares = smoothed(raw, static_cast<double>(raw.size()) / 128.0);
+  const std::vector<double> u = positions(shares);
+  std::vector<double> extinctions(shares.size());
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double density = shares[i] * static_cast<double>(shares.size());
+    const double phase = u[i] * kShellCount - std::floor(u[i] * kShellCount) - 0.5;
+    const double shell = std::exp(-0.5 * phase * phase / (0.25 * kShellWidth * kShellWidth));
+    extinctions[i] = (kBodyShare + shell) * std::pow(density + 0.02, -kRarity);
+  }
+  fit_budget(shares, extinctions);
+
+  TransferFunction function;
+  function.absorption = Absorption::kOpacity;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(shares.size());
+    function.points.push_back({std::lerp(histogram.range.min, histogram.range.max, t), color_at(u[i], invert),
+                               opacity_from_extinction(extinctions[i])});
+  }
+  return function;
+}
+
+}  // namespace tetravox

@@ -1,0 +1,66 @@
+/// Names of sources and integrators, for command lines and scene files.
+
+#include "tetravox/error.h"
+#include "tetravox/render.h"
+
+#include <array>
+#include <string_view>
+
+namespace tetravox {
+namespace {
+
+template <class Enumerator>
+struct Name {
+  Enumerator value;
+  std::string_view name;
+  std::string_view description;
+};
+
+constexpr std::array<Name<Source>, 1> kSources{
+    {{Source::kWalk, "walk", "ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)"}}};
+
+constexpr std::array<Name<Integrator>, 3> kIntegrators{
+    {{Integrator::kAntiderivative, "antiderivative",
+      "tables of antiderivatives, split where the error estimate asks (Max, Hanrahan, Crawfis 1990; Lum, Wilson, Ma "
+      "2004)"},
+     {Integrator::kPartial, "partial",
+      "exact for piecewise linear functions (Moreland and Angel 2004; Espinha and Celes 2005)"},
+     {Integrator::kPost, "post", "point samples along each segment, for comparison"}}};
+
+template <class Names>
+auto enumerator_from_name(const Names& names, std::string_view name, std::string_view what) {
+  std::string known;
+  for (const auto& entry : names) {
+    if (entry.name == name) return entry.value;
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw Error(ErrorCode::kInvalidArgument,
+              "there is no " + std::string(what) + " '" + std::string(name) + "'; there is: " + known);
+}
+
+template <class Names, class Enumerator>
+std::string name_of_enumerator(const Names& names, Enumerator value) {
+  for (const auto& entry : names)
+    if (entry.value == value) return std::string(entry.name);
+  throw Error(ErrorCode::kInvalidArgument, "an enumerator without a name: " + std::to_string(static_cast<int>(value)));
+}
+
+template <class Names>
+std::vector<std::pair<std::string, std::string>> list_names(const Names& names) {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const auto& entry : names) list.emplace_back(entry.name, entry.description);
+  return list;
+}
+
+}  // namespace
+
+std::string name_of(Source source) { return name_of_enumerator(kSources, source); }
+std::string name_of(Integrator integrator) { return name_of_enumerator(kIntegrators, integrator); }
+Source source_from_name(const std::string& name) { return enumerator_from_name(kSources, name, "source"); }
+Integrator integrator_from_name(const std::string& name) {
+  return enumerator_from_name(kIntegrators, name, "integrator");
+}
+std::vector<std::pair<std::string, std::string>> source_names() { return list_names(kSources); }
+std::vector<std::pair<std::string, std::string>> integrator_names() { return list_names(kIntegrators); }
+
+}  // namespace tetravox

@@ -1,0 +1,205 @@
+#include "src/optics/transfer_function_json.h"
+#include "tetravox/error.h"
+#include "tetravox/scene.h"
+
+#include <cmath>
+
+namespace tetravox {
+namespace {
+
+using optics::JsonPlace;
+using Json = nlohmann::ordered_json;
+
+constexpr int kSceneVersion = 1;
+constexpr int kLargestSampleCount = 4096;
+constexpr int kLargestComponent = 1'000'000;
+
+/// Calls `action`; what it throws is told as an error of the file, at `place`.
+template <class Action>
+auto at_place(const JsonPlace& place, const Action& action) {
+  try {
+    return action();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kInvalidArgument) throw;
+    place.fail(error.what());
+  }
+}
+
+void read_time(const JsonPlace& place, TimeRequest& time) {
+  place.require_keys({"index", "value"});
+  if (const auto index = place.find("index"))
+    time.index = static_cast<std::size_t>(index->integer(0, 1'000'000'000'000));
+  if (const auto value = place.find("value")) time.value = value->number();
+  if (time.index.has_value() == time.value.has_value()) place.fail("give either 'index' or 'value'");
+}
+
+std::string read_file_name(const JsonPlace& place) {
+  const std::string& name = place.string();
+  if (name.empty() || name.find('\0') != std::string::npos) place.fail("not a file name");
+  return name;
+}
+
+SceneData read_data(const JsonPlace& place) {
+  place.require_keys({"file", "solution_file", "array", "association", "component", "time"});
+  SceneData data;
+  data.file = read_file_name(place.at("file"));
+  if (const auto solution = place.find("solution_file")) data.solution_file = read_file_name(*solution);
+  if (const auto solution = place.find("solution_file")) {
+    data.solution_file = solution->string();
+    if (data.solution_file.find('\0') != std::string::npos) solution->fail("not a file name");
+  }
+  if (const auto array = place.find("array")) data.array.name = array->string();
+  if (const auto association = place.find("association")) {
+    if (association->string() != "point" && association->string() != "cell")
+      association->fail("expected \"point\" or \"cell\"");
+    data.array.association = association->string() == "point" ? Association::kPoint : Association::kCell;
+  }
+  if (const auto component = place.find("component")) {
+    if (component->value().is_string() && component->string() == "magnitude")
+      data.array.component = kMagnitude;
+    else if (component->value().is_number())
+      data.array.component = static_cast<int>(component->integer(0, kLargestComponent));
+    else
+      component->fail("expected 0, 1, 2, ... or \"magnitude\"");
+  }
+  if (const auto time = place.find("time")) read_time(*time, data.time);
+  return data;
+}
+
+Camera read_camera(const JsonPlace& place) {
+  place.require_keys({"position", "focal_point", "view_up", "view_angle", "parallel_scale"});
+  Camera camera;
+  place.at("position").numbers(camera.position.data(), 3);
+  place.at("focal_point").numbers(camera.focal_point.data(), 3);
+  if (const auto view_up = place.find("view_up")) view_up->numbers(camera.view_up.data(), 3);
+  const auto view_angle = place.find("view_angle"), parallel_scale = place.find("parallel_scale");
+  if (view_angle && parallel_scale)
+    place.fail("give 'view_angle' (perspective) or 'parallel_scale' (orthographic), not both");
+  if (view_angle) camera.view_angle = view_angle->number();
+  if (parallel_scale) camera.parallel_scale = parallel_scale->number();
+  at_place(place, [&] { validate_camera(camera); });
+  return camera;
+}
+
+void read_image(const JsonPlace& place, Scene& scene) {
+  place.require_keys({"resolution", "background"});
+  if (const auto resolution = place.find("resolution")) {
+    if (resolution->size() != 2) resolution->fail("expected two numbers, width and height");
+    scene.settings.width = static_cast<int>(resolution->at(std::size_t{0}).integer(1, kLargestResolution));
+    scene.settings.height = static_cast<int>(resolution->at(std::size_t{1}).integer(1, kLargestResolution));
+  }
+  if (const auto background = place.find("background")) {
+    background->numbers(scene.background.data(), 3);
+    for (const double channel : scene.background)
+      if (!(channel >= 0.0 && channel <= 1.0)) background->fail("colours are three numbers in [0, 1]");
+  }
+}
+
+void read_render(const JsonPlace& place, RenderSettings& settings) {
+  place.require_keys({"source", "integrator", "tolerance", "samples", "early_ray_termination"});
+  if (const auto source = place.find("source"))
+    settings.source = at_place(*source, [&] { return source_from_name(source->string()); });
+  if (const auto integrator = place.find("integrator"))
+    settings.integrator = at_place(*integrator, [&] { return integrator_from_name(integrator->string()); });
+  if (const auto tolerance = place.find("tolerance")) {
+    settings.tolerance = tolerance->number();
+    if (!(settings.tolerance > 0.0 && settings.tolerance <= 1.0)) tolerance->fail("expected a number in (0, 1]");
+  }
+  if (const auto samples = place.find("samples"))
+    settings.samples = static_cast<int>(samples->integer(1, kLargestSampleCount));
+  if (const auto use = place.find("early_ray_termination")) settings.use_early_ray_termination = use->boolean();
+}
+
+void require_version(const JsonPlace& root) {
+  const auto version = root.find("tetravox");
+  if (!version) root.fail("not a scene: the key 'tetravox' (the version, 1) is missing");
+  if (!version->value().is_number_integer() || version->value() != kSceneVersion)
+    version->fail("this program reads scenes of version 1, not " + optics::printable(version->value().dump()));
+}
+
+/// Text with one line for each member of an object and each element of a list; vectors and control points stay in one.
+std::string layout(const Json& json, int depth) {
+  const auto is_short = [](const Json& value) {
+    for (const Json& element : value)
+      if (element.is_structured() && (value.is_array() || !element.is_array())) return false;
+    return value.is_array() || value.contains("value") || value.empty();
+  };
+  if (!json.is_structured() || is_short(json)) return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string margin(2 * (static_cast<std::size_t>(depth) + 1), ' ');
+  std::string text(1, json.is_array() ? '[' : '{');
+  bool is_first = true;
+  for (const auto& member : json.items()) {
+    text += (is_first ? "\n" : ",\n") + margin;
+    if (json.is_object()) text += Json(member.key()).dump() + ": ";
+    text += layout(member.value(), depth + 1);
+    is_first = false;
+  }
+  return text + "\n" + margin.substr(2) + (json.is_array() ? ']' : '}');
+}
+
+Json write_data(const SceneData& data) {
+  Json json;
+  json["file"] = data.file;
+  if (!data.solution_file.empty()) json["solution_file"] = data.solution_file;
+  if (!data.solution_file.empty()) json["solution_file"] = data.solution_file;
+  if (!data.array.name.empty()) json["array"] = data.array.name;
+  if (data.array.association) json["association"] = *data.array.association == Association::kPoint ? "point" : "cell";
+  if (data.array.component && *data.array.component == kMagnitude) json["component"] = "magnitude";
+  if (data.array.component && *data.array.component != kMagnitude) json["component"] = *data.array.component;
+  if (data.time.index) json["time"]["index"] = *data.time.index;
+  if (data.time.value) json["time"]["value"] = *data.time.value;
+  return json;
+}
+
+Json write_camera(const Camera& camera) {
+  Json json;
+  json["position"] = camera.position;
+  json["focal_point"] = camera.focal_point;
+  json["view_up"] = camera.view_up;
+  if (camera.parallel_scale)
+    json["parallel_scale"] = *camera.parallel_scale;
+  else
+    json["view_angle"] = camera.view_angle;
+  return json;
+}
+
+Json write_render(const RenderSettings& settings) {
+  Json json;
+  json["source"] = name_of(settings.source);
+  json["integrator"] = name_of(settings.integrator);
+  json["tolerance"] = settings.tolerance;
+  json["samples"] = settings.samples;
+  json["early_ray_termination"] = settings.use_early_ray_termination;
+  return json;
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& source_name) {
+  const nlohmann::json json = optics::parse_json(text, source_name);
+  const JsonPlace root(json, source_name);
+  require_version(root);
+  root.require_keys({"tetravox", "data", "transfer_function", "camera", "image", "render"});
+  Scene scene;
+  scene.data = read_data(root.at("data"));
+  if (const auto function = root.find("transfer_function"))
+    scene.transfer_function = optics::read_scene_function(*function);
+  if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera);
+  if (const auto image = root.find("image")) read_image(*image, scene);
+  if (const auto render = root.find("render")) read_render(*render, scene.settings);
+  return scene;
+}
+
+std::string format_scene(const Scene& scene) {
+  Json json;
+  json["tetravox"] = kSceneVersion;
+  json["data"] = write_data(scene.data);
+  if (scene.transfer_function) json["transfer_function"] = optics::write_scene_function(*scene.transfer_function);
+  if (scene.camera) json["camera"] = write_camera(*scene.camera);
+  json["image"]["resolution"] = {scene.settings.width, scene.settings.height};
+  json["image"]["background"] = scene.background;
+  json["render"] = write_render(scene.settings);
+  return layout(json, 0) + "\n";
+}
+
+}  // namespace tetravox
