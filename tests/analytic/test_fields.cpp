@@ -1,0 +1,185 @@
+/// Constant and linear fields in a box, drawn through every integrator and kind of cell.
+
+#include "tests/analytic/closed_form.h"
+#include "tests/common/draw.h"
+#include "tests/common/mesh_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tetravox::analytic {
+namespace {
+
+using tests::BoxOptions;
+using tests::make_box;
+using tests::make_settings;
+
+const Vector3 kLower{-1.0, -0.8, -0.9};
+const Vector3 kUpper{1.1, 0.9, 0.7};
+
+/// The field s = 0.5 + gradient . p, in about [0, 1] over the box.
+double linear_field(const Vector3& p) { return 0.5 + 0.21 * p[0] - 0.13 * p[1] + 0.16 * p[2]; }
+
+struct Case {
+  Integrator integrator;
+  CellType type;
+};
+
+class Fields : public ::testing::TestWithParam<Case> {
+ protected:
+  MeshData box(const tests::Field& field) const {
+    BoxOptions options;
+    options.bricks = {5, 4, 6};
+    options.lower = kLower;
+    options.upper = kUpper;
+    options.type = GetParam().type;
+    return make_box(options, field);
+  }
+  /// Draws the box from all standard cameras and holds each picture against `expected`.
+  void expect_shown(const tests::Field& field, const OpticalFunction& function,
+                    const std::function<Rgba(const Ray&, const Chord&)>& expected, double tolerance) const {
+    const PreparedMesh mesh = prepare_mesh(box(field));
+    RenderSettings settings = make_settings(GetParam().integrator, 61, 43);
+    settings.samples = 256;
+    for (const auto& [name, camera] : standard_cameras()) {
+      const Image image = render(mesh, function, camera, settings);
+      EXPECT_TRUE(shows(
+          image, camera,
+          [&](const Ray& ray) {
+            const Chord chord = intersect_box(ray, kLower, kUpper);
+            return chord.length() > 0.0 ? expected(ray, chord) : Rgba{};
+          },
+          tolerance))
+          << name;
+    }
+  }
+  bool is_sampled() const { return GetParam().integrator == Integrator::kPost; }
+};
+
+TEST_P(Fields, ConstantFieldAbsorbsByItsLength) {
+  const OpticalFunction function{{{0.0, 0.0, {0, 0, 0}}, {1.0, 4.0, {1.0, 0.5, 0.2}}}};
+  expect_shown([](const Vector3&) { return 0.25; }, function,
+               [](const Ray&, const Chord& chord) {
+                 return fill({0.25, 0.125, 0.05}, chord.length());
+               },
+               1e-5);
+}
+
+TEST_P(Fields, ConstantFieldBeyondTheLastControlPointIsClamped) {
+  const OpticalFunction function{{{0.0, 0.3, {0.1, 0.2, 0.3}}, {1.0, 1.2, {1.0, 0.5, 0.2}}}};
+  expect_shown([](const Vector3&) { return 17.0; }, function,
+               [](const Ray&, const Chord& chord) {
+                 return fill({1.0, 0.5, 0.2}, 1.2 * chord.length());
+               },
+               1e-5);
+  expect_shown([](const Vector3&) { return -17.0; }, function,
+               [](const Ray&, const Chord& chord) {
+                 return fill({0.1, 0.2, 0.3}, 0.3 * chord.length());
+               },
+               1e-5);
+}
+
+TEST_P(Fields, LinearExtinctionHasTheMeanOfItsEnds) {
+  const OpticalFunction function{{{0.0, 0.1, {0.0, 0.3, 0.9}}, {1.0, 3.3, {1.0, 0.4, 0.1}}}};
+  expect_shown(
+      linear_field, function,
+      [&](const Ray& ray, const Chord& chord) {
+        const double front = linear_field(ray.at(chord.near)), back = linear_field(ray.at(chord.far));
+        Rgba result = integrate(chord.length(), [&](double u) {
+          const OpticalPoint point = eval_optical_function(function, front + u * (back - front));
+          return Medium{point.extinction, point.color};
+        });
+        result[3] = -std::expm1(-chord.length() * (0.1 + 3.2 * 0.5 * (front + back)));
+        return result;
+      },
+      is_sampled() ? 2e-4 : 2e-5);
+}
+
+TEST_P(Fields, ConstantExtinctionWithLinearColourHasTheClosedForm) {
+  const double rho = 1.7;
+  const OpticalFunction function{{{0.0, rho, {0, 0, 1}}, {1.0, rho, {1, 0, 0}}}};
+  expect_shown(
+      linear_field, function,
+      [&](const Ray& ray, const Chord& chord) {
+        const double front = linear_field(ray.at(chord.near)), back = linear_field(ray.at(chord.far));
+        const double length = chord.length(), depth = rho * length;
+        const double alpha = -std::expm1(-depth);
+        // integral of t rho exp(-rho t)
+        const double moment = (1.0 - (1.0 + depth) * std::exp(-depth)) / rho;
+        const double red = front * alpha + (back - front) / length * moment;
+        return Rgba{red, 0.0, alpha - red, alpha};
+      },
+      is_sampled() ? 2e-4 : 2e-5);
+}
+
+TEST_P(Fields, WhiteIsAsBrightAsItIsOpaque) {
+  OpticalFunction function;
+  for (int i = 0; i <= 20; ++i) function.points.push_back({0.05 * i, 3.0 + 3.0 * std::sin(2.1 * i), {1, 1, 1}});
+  const PreparedMesh mesh = prepare_mesh(box(linear_field));
+  for (const auto& [name, camera] : standard_cameras()) {
+    const Image image = render(mesh, function, camera, make_settings(GetParam().integrator, 61, 43));
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      ASSERT_NEAR(image.pixels[i], image.pixels[i - i % 4 + 3], 2e-5) << name << " value " << i;
+  }
+}
+
+TEST_P(Fields, ATentHasItsIntegral) {
+  // Extinction rises from 0 at 0.3 to 8 at 0.5 and falls to 0 at 0.6; one colour.
+  const OpticalFunction function{
+      {{0.3, 0.0, {0.2, 0.9, 0.4}}, {0.5, 8.0, {0.2, 0.9, 0.4}}, {0.6, 0.0, {0.2, 0.9, 0.4}}}};
+  const auto integral = [](double s) {
+    if (s <= 0.3) return 0.0;
+    if (s <= 0.5) return 20.0 * (s - 0.3) * (s - 0.3);
+    const double left = std::max(0.6 - s, 0.0);
+    return 1.2 - 40.0 * left * left;
+  };
+  expect_shown(
+      linear_field, function,
+      [&](const Ray& ray, const Chord& chord) {
+        const double front = linear_field(ray.at(chord.near)), back = linear_field(ray.at(chord.far));
+        return fill({0.2, 0.9, 0.4}, chord.length() * (integral(back) - integral(front)) / (back - front));
+      },
+      is_sampled() ? 1e-3 : 1e-4);
+}
+
+TEST_P(Fields, StepsCutTheChord) {
+  const Color kRed{0.9, 0.1, 0.1}, kBlue{0.1, 0.2, 0.8};
+  const OpticalFunction function{{{0.35, 0.0, kRed},
+                                  {0.35, 1.5, kRed},
+                                  {0.55, 1.5, kRed},
+                                  {0.55, 6.0, kBlue},
+                                  {0.7, 6.0, kBlue},
+                                  {0.7, 0.0, kBlue}}};
+  expect_shown(
+      linear_field, function,
+      [&](const Ray& ray, const Chord& chord) {
+        const double front = linear_field(ray.at(chord.near)), back = linear_field(ray.at(chord.far));
+        const auto part = [&](double low, double high) {
+          const double first = std::clamp(std::min(front, back), low, high);
+          const double last = std::clamp(std::max(front, back), low, high);
+          return chord.length() * (last - first) / std::abs(back - front);
+        };
+        const Rgba red = fill(kRed, 1.5 * part(0.35, 0.55)), blue = fill(kBlue, 6.0 * part(0.55, 0.7));
+        return back > front ? over(red, blue) : over(blue, red);
+      },
+      is_sampled() ? 5e-3 : 2e-4);
+}
+
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  for (const Integrator integrator : tests::kAllIntegrators)
+    for (const CellType type : {CellType::kTetrahedron, CellType::kVoxel, CellType::kHexahedron, CellType::kWedge,
+                                CellType::kPyramid, CellType::kPolyhedron})
+      if (type == CellType::kHexahedron || integrator == Integrator::kAntiderivative)
+        cases.push_back({integrator, type});
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Box, Fields, ::testing::ValuesIn(all_cases()), [](const auto& test) {
+  std::string name = name_of(test.param.integrator) + "_" + std::to_string(static_cast<int>(test.param.type));
+  return name;
+});
+
+}  // namespace
+}  // namespace tetravox::analytic
