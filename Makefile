@@ -43,7 +43,7 @@ test:
 
 bench:
 	@tools/install_dependencies.sh build bench
-	@cmake --preset release -DTETRAVOX_WITH_TESTS=OFF -DTETRAVOX_WITH_BENCH=ON
+	@$(CONFIGURE) -DTETRAVOX_WITH_BENCH=ON
 	@cmake --build --preset release --parallel $(JOBS) --target product export_builtin
 	@/usr/bin/python3 bench/run.py --build $(BUILD) $(if $(QUICK),--quick) $(if $(README),--readme $(README))
 
