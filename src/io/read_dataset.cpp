@@ -1,1 +1,96 @@
-// Under construction.
+#include "src/io/formats.h"
+#include "src/io/reader_process.h"
+#include "src/io/time_steps.h"
+#include "src/io/validate_mesh.h"
+#include "src/support/memory.h"
+#include "tetravox/io.h"
+
+#include <unistd.h>
+
+#include <cstring>
+#include <stdexcept>
+
+namespace tetravox {
+
+namespace {
+
+constexpr const char* kBuiltinPrefix = "builtin:";
+
+/// The component of `array` that a request means.
+int pick_component(const ArrayInfo& array, const ArrayRequest& request) {
+  return array.components == 1 ? 0 : request.component.value_or(kMagnitude);
+}
+
+/// Makes an embedded dataset and holds its one field against the request.
+Dataset read_builtin(const std::string& path, const ReadOptions& options) {
+  Dataset dataset = make_builtin(path);
+  const ArrayInfo& array = dataset.info.arrays.at(choose_array(dataset.info, options.array));
+  dataset.mesh.component = pick_component(array, options.array);
+  dataset.info.time_index = io::pick_time(dataset.info.times, options.time, path);
+  if (options.only_info) dataset.mesh = {};
+  return dataset;
+}
+
+void require_drawable(io::Format format, const std::string& path) {
+  if (format == io::Format::kRegularGrid)
+    throw Error(ErrorCode::kUnsupported, "'" + path +
+                                             "' holds a regular grid, and regular grids are not drawn yet: give a mesh "
+                                             "of cells (tetravox list readers)");
+  if (format == io::Format::kSurface)
+    throw Error(ErrorCode::kNothingToDraw,
+                "'" + path + "' holds surfaces only, and tetravox draws volumes: give a mesh of volume cells");
+}
+
+/// A section of the memory file as a span.
+/// @throws std::out_of_range where it does not fit in.
+template <class T>
+std::span<const T> view_section(const io::SharedMemory& memory, const io::Section& section) {
+  if (section.offset % alignof(T) != 0 || section.bytes % sizeof(T) != 0 || section.offset > memory.bytes.size() ||
+      section.bytes > memory.bytes.size() - section.offset)
+    throw std::out_of_range("a section lies outside the memory file");
+  return {reinterpret_cast<const T*>(memory.bytes.data() + section.offset), section.bytes / sizeof(T)};
+}
+
+Dataset view_dataset(const io::SharedMemory& memory, bool only_info) {
+  io::SharedHeader header;
+  std::memcpy(&header, memory.bytes.data(), sizeof header);
+  io::Description description = io::decode_description(view_section<std::byte>(memory, header.description));
+  Dataset dataset;
+  dataset.info = std::move(description.info);
+  if (only_info) return dataset;
+  MeshData& mesh = dataset.mesh;
+  mesh.points = view_section<double>(memory, header.points);
+  mesh.cell_types = view_section<CellType>(memory, header.cell_types);
+  mesh.cell_offsets = view_section<std::uint64_t>(memory, header.cell_offsets);
+  mesh.connectivity = view_section<std::uint32_t>(memory, header.connectivity);
+  mesh.scalars = view_section<double>(memory, header.scalars);
+  mesh.association = description.association;
+  mesh.array_name = std::move(description.array_name);
+  mesh.component = description.component;
+  mesh.storage = memory.storage;
+  return dataset;
+}
+
+}  // namespace
+
+Dataset read_dataset(const std::string& path, const ReadOptions& options, const Progress& progress) {
+  if (path.starts_with(kBuiltinPrefix)) return read_builtin(path, options);
+  if (path.empty()) throw Error(ErrorCode::kInvalidArgument, "no file was named");
+  // Find out early what needs no reader process: a missing file, a wrong kind of file.
+  require_drawable(io::detect_format(path, !options.grid_file.empty()), path);
+  io::ReaderRequest request{path, options, getpid()};
+  if (request.options.memory_limit == 0) request.options.memory_limit = support::available_memory();
+  const io::SharedMemory memory = io::run_reader(request, progress);
+  Dataset dataset;
+  try {
+    dataset = view_dataset(memory, options.only_info);
+  } catch (const std::out_of_range& error) {
+    throw Error(ErrorCode::kReaderFailed, "the reader of '" + path + "' left data that make no sense (" + error.what() +
+                                              "): the file is damaged, or please report this");
+  }
+  if (!options.only_info) io::validate_mesh(dataset.mesh, path);
+  if (progress.report) progress.report("read", 1.0);
+  return dataset;
+}
+
+}  // namespace tetravox

@@ -1,0 +1,55 @@
+#pragma once
+
+/// Small XML files that only list other files: ParaView's PVD, VTK's multi-block (VTM) and parallel (PVTU, PVTS, PVTR)
+/// files. Hostile text is met with an `Error`, never with more than linear work.
+
+#include "tetravox/scene.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace tetravox::io {
+
+/// The most files that one collection may name.
+inline constexpr std::size_t kMostCollectionFiles = 100'000;
+/// The largest collection file that is read, bytes.
+inline constexpr std::size_t kLargestCollection = std::size_t{64} << 20;
+
+/// One entry of a PVD file.
+struct PvdEntry {
+  double time = 0.0;
+  std::string part;
+  std::string file;  ///< as written; relative to the PVD file
+};
+
+struct PvdCollection {
+  std::vector<PvdEntry> entries;  ///< in file order
+  std::vector<double> times;      ///< distinct time steps, ascending
+};
+
+/// Parses a PVD file's text.
+/// @throws Error (kBadFile) that names `source_name` and the entry.
+PvdCollection parse_pvd(const std::string& text, const std::string& source_name);
+
+/// Files of the step `time_index` of `collection.times`, in file order.
+std::vector<std::string> files_of_step(const PvdCollection& collection, std::size_t time_index);
+
+/// What a VTM, PVTU, PVTS or PVTR file lists.
+struct FileList {
+  std::vector<std::string> files;  ///< as written; relative to the list's own file
+  bool has_ghost_levels = false;   ///< a parallel file that says its pieces overlap
+};
+
+/// Parses the text of a VTM, PVTU, PVTS or PVTR file.
+/// @throws Error (kBadFile) that names `source_name` and the entry.
+FileList parse_file_list(const std::string& text, const std::string& source_name);
+
+/// The whole file as text.
+/// @throws Error: kFileNotFound, or kBadFile where it exceeds kLargestCollection.
+std::string read_collection_text(const std::string& path);
+
+/// `file` as seen from the directory of `collection_path`, unless it is absolute.
+std::string resolve_path(const std::string& collection_path, const std::string& file);
+
+}  // namespace tetravox::io

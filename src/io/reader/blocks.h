@@ -1,0 +1,55 @@
+#pragma once
+
+/// What the readers of all formats return: data sets of VTK, one a block.
+
+#include "tetravox/error.h"
+#include "tetravox/scene.h"
+
+#include <vtkDataSet.h>
+#include <vtkSmartPointer.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkDataObject;
+
+namespace tetravox::io {
+
+struct FileContents {
+  std::vector<vtkSmartPointer<vtkDataSet>> blocks;
+  std::vector<double> times;
+  std::size_t time_index = 0;
+  std::string format;
+  std::vector<std::string> notes;
+  std::uint64_t regular_grids = 0;  ///< blocks that were left out because they are regular grids
+};
+
+/// Reads a file of any format.
+/// @throws Error that names the file.
+FileContents read_file(const std::string& path, const std::string& grid_file, const TimeRequest& time);
+
+/// @throws Error (kBadFile) that names the file and what is wrong.
+[[noreturn]] void fail_file(const std::string& path, const std::string& what);
+
+/// Runs VTK's reader for the step that `time` asks for, with progress; fills in `times` and `time_index`.
+/// @throws Error with VTK's first complaint.
+void update_reader(vtkAlgorithm& reader, const std::string& path, const TimeRequest& time, FileContents& contents);
+
+/// Appends the data set, or all leaves of the composite data set, that a reader returned.
+void append_blocks(vtkDataObject* data, FileContents& contents);
+
+// One function a family of formats.
+FileContents read_xml(const std::string& path, const TimeRequest& time);         // VTU, VTS, VTR
+FileContents read_collection(const std::string& path, const TimeRequest& time);  // PVD, VTM, PVTU, PVTS, PVTR
+FileContents read_legacy(const std::string& path);
+FileContents read_vtkhdf(const std::string& path, const TimeRequest& time);
+FileContents read_exodus(const std::string& path, const TimeRequest& time);
+FileContents read_cgns(const std::string& path, const TimeRequest& time);
+FileContents read_ensight(const std::string& path, const TimeRequest& time);
+FileContents read_openfoam(const std::string& path, const TimeRequest& time);
+FileContents read_ucd(const std::string& path);
+FileContents read_plot3d(const std::string& path, const std::string& solution_path);
+
+}  // namespace tetravox::io

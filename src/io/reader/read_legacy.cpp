@@ -1,0 +1,118 @@
+// Legacy VTK files. VTK's readers are silent about some that end too early, so the counts of the header are compared
+// with what came.
+
+#include "src/io/reader/blocks.h"
+
+#include <vtkDataReader.h>
+#include <vtkNew.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkRectilinearGridReader.h>
+#include <vtkStructuredGrid.h>
+#include <vtkStructuredGridReader.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridReader.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+namespace tetravox::io {
+
+namespace {
+
+std::string read_whole(const std::string& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  std::string text(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
+  in.seekg(0);
+  if (!in.read(text.data(), static_cast<std::streamsize>(text.size()))) fail_file(path, "could not be read to its end");
+  return text;
+}
+
+/// The number that follows `keyword` at the beginning of a line, at its first occurrence; VTK takes both cases.
+std::optional<long long> find_count(std::string_view text, std::string keyword) {
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t at = 0; (at = text.find(keyword, at)) != std::string_view::npos; ++at) {
+      std::size_t number = at + keyword.size();
+      if (at == 0 || text[at - 1] != '\n' || number >= text.size() || text[number] != ' ') continue;
+      while (number < text.size() && text[number] == ' ') ++number;
+      long long count = 0;
+      const auto [end, error] = std::from_chars(text.data() + number, text.data() + text.size(), count);
+      if (error == std::errc()) return count;
+    }
+    for (char& c : keyword) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return std::nullopt;
+}
+
+/// The word after DATASET, in lower case; empty where there is none.
+std::string dataset_type(const std::string& text, const std::string& path) {
+  std::istringstream in(text.substr(0, 4096));
+  std::string line;
+  for (int i = 0; i < 4; ++i) std::getline(in, line);
+  std::istringstream words(line);
+  std::string keyword, type;
+  words >> keyword >> type;
+  for (std::string* word : {&keyword, &type})
+    for (char& c : *word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (keyword != "dataset") fail_file(path, "no DATASET in its fourth line");
+  return type;
+}
+
+void require_count(const std::string& text, const char* keyword, vtkIdType count, const std::string& path) {
+  const auto promised = find_count(text, keyword);
+  if (promised && *promised != count)
+    fail_file(path, std::string(keyword) + " promises " + std::to_string(*promised) + ", and " + std::to_string(count) +
+                        " came");
+}
+
+template <class Reader>
+FileContents read_with(const std::string& path) {
+  const vtkNew<Reader> reader;
+  vtkDataReader& data_reader = *reader;
+  data_reader.SetFileName(path.c_str());
+  data_reader.ReadAllScalarsOn();
+  data_reader.ReadAllVectorsOn();
+  data_reader.ReadAllNormalsOn();
+  data_reader.ReadAllTensorsOn();
+  data_reader.ReadAllColorScalarsOn();
+  data_reader.ReadAllTCoordsOn();
+  data_reader.ReadAllFieldsOn();
+  FileContents contents;
+  update_reader(*reader, path, {}, contents);
+  append_blocks(reader->GetOutputDataObject(0), contents);
+  return contents;
+}
+
+}  // namespace
+
+FileContents read_legacy(const std::string& path) {
+  const std::string text = read_whole(path);
+  const std::string type = dataset_type(text, path);
+  FileContents contents;
+  if (type == "unstructured_grid")
+    contents = read_with<vtkUnstructuredGridReader>(path);
+  else if (type == "structured_grid")
+    contents = read_with<vtkStructuredGridReader>(path);
+  else if (type == "rectilinear_grid")
+    contents = read_with<vtkRectilinearGridReader>(path);
+  else
+    throw Error(ErrorCode::kUnsupported,
+                "'" + path + "' holds '" + type + "': give an unstructured, structured or rectilinear grid");
+  if (contents.blocks.empty()) fail_file(path, "VTK made nothing of it");
+  vtkDataSet& data = *contents.blocks.front();
+  if (type == "unstructured_grid") {
+    if (data.GetNumberOfCells() == 0 && find_count(text, "CELLS").value_or(0) > 0)
+      fail_file(path, "its cells could not be read");
+    require_count(text, "CELL_TYPES", data.GetNumberOfCells(), path);
+  }
+  require_count(text, "POINTS", data.GetNumberOfPoints(), path);
+  require_count(text, "POINT_DATA", data.GetNumberOfPoints(), path);
+  require_count(text, "CELL_DATA", data.GetNumberOfCells(), path);
+  return contents;
+}
+
+}  // namespace tetravox::io

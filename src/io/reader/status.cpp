@@ -1,0 +1,152 @@
+#include "src/io/reader/status.h"
+
+#include "src/io/reader_protocol.h"
+#include "src/support/memory.h"
+
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <mutex>
+#include <new>
+
+namespace tetravox::io {
+
+namespace {
+
+void write_all(const char* text, std::size_t size) noexcept {
+  while (size > 0) {
+    const ssize_t written = write(kStatusDescriptor, text, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return;
+    text += written;
+    size -= static_cast<std::size_t>(written);
+  }
+}
+
+/// VTK's message without its place in VTK's sources: what follows the class name and address.
+std::string strip_vtk_message(const char* text) {
+  std::string message = text ? text : "";
+  if (const std::size_t line_end = message.find('\n'); line_end != std::string::npos && message.find("In ") < line_end)
+    message.erase(0, line_end + 1);
+  if (const std::size_t object = message.find("): "); object != std::string::npos && object < 120)
+    message.erase(0, object + 3);
+  return clean_line(message, 300);
+}
+
+/// Keeps the first error and the first warning. VTK may complain from any thread.
+class ComplaintKeeper : public vtkOutputWindow {
+ public:
+  static ComplaintKeeper* New();
+
+  void DisplayText(const char*) override {}
+  void DisplayDebugText(const char*) override {}
+  void DisplayErrorText(const char* text) override { keep(error_, text); }
+  void DisplayWarningText(const char* text) override { keep(warning_, text); }
+  void DisplayGenericWarningText(const char* text) override { keep(warning_, text); }
+
+  std::string error() const {
+    const std::lock_guard lock(mutex_);
+    return error_;
+  }
+  std::string warning() const {
+    const std::lock_guard lock(mutex_);
+    return warning_;
+  }
+
+ private:
+  void keep(std::string& kept, const char* text) {
+    const std::lock_guard lock(mutex_);
+    if (!kept.empty()) return;
+    kept = strip_vtk_message(text);
+    if (kept.empty()) kept = "VTK gives no reason";
+  }
+  mutable std::mutex mutex_;
+  std::string error_, warning_;
+};
+vtkStandardNewMacro(ComplaintKeeper)
+
+    ComplaintKeeper& complaints() {
+  static const vtkNew<ComplaintKeeper> keeper;
+  return *keeper;
+}
+
+/// Made ready while there still is memory.
+std::string& out_of_memory_message() {
+  static std::string message;
+  return message;
+}
+
+[[noreturn]] void leave_without_memory() {
+  send_error(ErrorCode::kOutOfMemory, out_of_memory_message().c_str());
+  _exit(1);
+}
+
+[[noreturn]] void leave_with_exception() {
+  try {
+    if (const std::exception_ptr exception = std::current_exception()) std::rethrow_exception(exception);
+  } catch (const std::bad_alloc&) {
+    leave_without_memory();
+  } catch (const std::exception& exception) {
+    send_error(ErrorCode::kBadFile, exception.what());
+    _exit(1);
+  } catch (...) {
+  }
+  std::abort();
+}
+
+bool is_about_memory(const std::string& message) {
+  for (const char* words : {"nable to allocate", "bad_alloc", "out of memory", "llocation failed", "annot allocate"})
+    if (message.find(words) != std::string::npos) return true;
+  return false;
+}
+
+}  // namespace
+
+void send_error(ErrorCode code, const char* text) noexcept {
+  char line[kLongestMessage + 32];
+  const int size = std::snprintf(line, sizeof line - 1, "error %d ", static_cast<int>(code));
+  std::size_t length = static_cast<std::size_t>(size);
+  for (; *text && length < kLongestMessage; ++text) line[length++] = *text == '\n' ? ' ' : *text;
+  line[length++] = '\n';
+  write_all(line, length);
+}
+
+void send_progress(double fraction) noexcept {
+  char line[64];
+  const int size = std::snprintf(line, sizeof line, "progress %.3f\n", fraction);
+  write_all(line, static_cast<std::size_t>(size));
+}
+
+void send_done() noexcept { write_all("done\n", 5); }
+
+void install_error_handlers(const std::string& file, std::uint64_t memory_limit) {
+  out_of_memory_message() = describe_out_of_memory(file, memory_limit);
+  vtkOutputWindow::SetInstance(&complaints());
+  std::set_new_handler(leave_without_memory);
+  std::set_terminate(leave_with_exception);
+}
+
+void throw_if_vtk_failed(const std::string& file) {
+  const std::string error = complaints().error();
+  if (error.empty()) return;
+  if (is_about_memory(error)) throw Error(ErrorCode::kOutOfMemory, out_of_memory_message());
+  throw Error(ErrorCode::kBadFile,
+              "'" + file + "' could not be read: " + error + "; the file is damaged or not what its ending says");
+}
+
+std::string first_vtk_warning() { return complaints().warning(); }
+
+std::string describe_out_of_memory(const std::string& file, std::uint64_t memory_limit) {
+  return "reading '" + file + "' takes more than the " + support::format_bytes(memory_limit) +
+         " there are: free memory, use a smaller file, or its counts are damaged";
+}
+
+}  // namespace tetravox::io
