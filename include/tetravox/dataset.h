@@ -128,8 +128,10 @@ std::size_t choose_array(const DatasetInfo& info, const ArrayRequest& request);
 
 /// Makes an embedded dataset: "sphere", "buckyball" or "duct", with optional "?cells=N" (about N cells).
 /// `name` may carry the prefix "builtin:". Deterministic. Sources and formulas: src/mesh/builtin.cpp.
-/// @throws Error (kInvalidArgument) that lists the names there are.
+/// @throws Error (kInvalidArgument) that lists the names there are; (kOutOfMemory).
 Dataset make_builtin(const std::string& name);
+/// The same with the array that `request` asks for ("duct" has several).
+Dataset make_builtin(const std::string& name, const ArrayRequest& request);
 
 /// Names and one-line descriptions of the embedded datasets.
 std::vector<std::pair<std::string, std::string>> builtin_names();
