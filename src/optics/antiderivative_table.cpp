@@ -1,1 +1,235 @@
-// Under construction.
+#include "src/optics/antiderivative_table.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace tetravox::optics {
+namespace {
+
+/// Nodes that the narrowest piece of the function gets at least, and the bounds of the table's size.
+constexpr double kNodesPerPiece = 512.0;
+constexpr std::int32_t kFewestNodes = 8192;
+constexpr std::int32_t kMostNodes = 65536;
+/// T at the last node, as an integer.
+constexpr double kFullScale = 1 << 30;
+
+using Density = std::array<double, 4>;  // rho, rho*red, rho*green, rho*blue
+
+Density density_of(const OpticalPoint& point) {
+  return {point.extinction, point.extinction * point.color[0], point.extinction * point.color[1],
+          point.extinction * point.color[2]};
+}
+
+/// Extinction and colour as polynomials of the distance from the start of a piece.
+struct Piece {
+  double begin = 0.0, end = 0.0;
+  Density rates{};   // rho and colours at begin
+  Density slopes{};  // of rho and colours
+
+  /// Integrals of rho and colour * rho from `a` to `b`, both inside the piece.
+  void accumulate(double a, double b, Density& sum) const {
+    const double x0 = a - begin, x1 = b - begin, w = b - a;
+    const double mean = 0.5 * (x0 + x1);                        // of x
+    const double square = (x0 * x0 + x0 * x1 + x1 * x1) / 3.0;  // mean of x^2
+    sum[0] += w * (rates[0] + slopes[0] * mean);
+    for (int channel = 1; channel < 4; ++channel)
+      sum[channel] +=
+          w * (rates[0] * rates[channel] + (rates[0] * slopes[channel] + slopes[0] * rates[channel]) * mean +
+               slopes[0] * slopes[channel] * square);
+  }
+};
+
+Piece make_piece(const OpticalPoint& a, const OpticalPoint& b) {
+  Piece piece;
+  piece.begin = a.value;
+  piece.end = b.value;
+  piece.rates = {a.extinction, a.color[0], a.color[1], a.color[2]};
+  const double width = b.value - a.value;
+  if (width > 0.0 && std::isfinite(width))
+    piece.slopes = {(b.extinction - a.extinction) / width, (b.color[0] - a.color[0]) / width,
+                    (b.color[1] - a.color[1]) / width, (b.color[2] - a.color[2]) / width};
+  return piece;
+}
+
+/// The pieces between control points that have a width, and constant ones before and after.
+std::vector<Piece> make_pieces(const OpticalFunction& function) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<Piece> pieces;
+  const auto& points = function.points;
+  OpticalPoint before = points.front();
+  before.value = -kInfinity;
+  pieces.push_back(make_piece(before, points.front()));
+  pieces.back().begin = points.front().value - 1.0;  // finite reference; constant anyway
+  for (std::size_t i = 0; i + 1 < points.size(); ++i)
+    if (points[i + 1].value > points[i].value) pieces.push_back(make_piece(points[i], points[i + 1]));
+  OpticalPoint after = points.back();
+  after.value = kInfinity;
+  pieces.push_back(make_piece(points.back(), after));
+  return pieces;
+}
+
+/// The interval of values that the nodes cover: where both the function varies and the data lie.
+ValueRange table_range(const OpticalFunction& function, const ScalarMap& map, const ValueRange& range) {
+  ValueRange covered{std::max(function.points.front().value, range.min),
+                     std::min(function.points.back().value, range.max)};
+  if (!(covered.max > covered.min)) {  // constant data, a constant function, or no overlap: any interval serves
+    const double middle = std::clamp(range.min, function.points.front().value, function.points.back().value);
+    const double half = std::max({std::abs(middle) * 1e-6, std::abs(map.scale) * 1e-6, 1e-300});
+    covered = {middle - half, middle + half};
+  }
+  return covered;
+}
+
+std::int32_t choose_node_count(const OpticalFunction& function, const ValueRange& covered) {
+  double narrowest = covered.max - covered.min;
+  const auto& points = function.points;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const double width = points[i + 1].value - points[i].value;
+    const bool visible = points[i].extinction > 0.0 || points[i + 1].extinction > 0.0;
+    if (width > 0.0 && visible && points[i + 1].value > covered.min && points[i].value < covered.max)
+      narrowest = std::min(narrowest, width);
+  }
+  const double wanted = kNodesPerPiece * (covered.max - covered.min) / narrowest;
+  std::int32_t nodes = kFewestNodes;
+  while (nodes < wanted && nodes < kMostNodes) nodes *= 2;
+  return nodes;
+}
+
+/// Exact integrals over each of `count` equal bins.
+std::vector<Density> integrate_bins(const std::vector<Piece>& pieces, const ValueRange& covered, std::int32_t count) {
+  std::vector<Density> bins(count);
+  const double width = (covered.max - covered.min) / count;
+  std::size_t piece = 0;
+  double begin = covered.min;
+  for (std::int32_t i = 0; i < count; ++i) {
+    const double end = covered.min + width * (i + 1);
+    Density sum{};
+    while (piece + 1 < pieces.size() && pieces[piece].end <= end) {
+      if (pieces[piece].end > begin) {
+        pieces[piece].accumulate(begin, pieces[piece].end, sum);
+        begin = pieces[piece].end;
+      }
+      ++piece;
+    }
+    if (end > begin) pieces[piece].accumulate(begin, end, sum);
+    begin = end;
+    bins[i] = sum;
+  }
+  return bins;
+}
+
+/// Total variation of the visible colour, largest channel; invisible stretches count when colour is next seen.
+void fill_color_variation(const std::vector<Density>& bins, AntiderivativeTable& table) {
+  table.color_variation.resize(bins.size() + 1);
+  std::array<double, 3> last{};
+  bool seen = false;
+  double total = 0.0, largest = 0.0;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    table.color_variation[i] = static_cast<float>(total);
+    if (!(bins[i][0] > 0.0)) continue;
+    double change = 0.0;
+    for (int channel = 0; channel < 3; ++channel) {
+      const double color = bins[i][channel + 1] / bins[i][0];
+      if (seen) change = std::max(change, std::abs(color - last[channel]));
+      last[channel] = color;
+    }
+    seen = true;
+    total += change;
+    largest = std::max(largest, change);
+  }
+  table.color_variation.back() = static_cast<float>(total);
+  table.largest_color_slope = static_cast<float>(largest);
+}
+
+}  // namespace
+
+AntiderivativeTable build_antiderivative_table(const OpticalFunction& function, const ScalarMap& map,
+                                               const ValueRange& range) {
+  const ValueRange covered = table_range(function, map, range);
+  const std::int32_t count = choose_node_count(function, covered);
+  const std::vector<Density> bins = integrate_bins(make_pieces(function), covered, count);
+
+  AntiderivativeTable table;
+  table.last_node = count;
+  table.first = map.stored_from_value(covered.min);
+  const double width = (covered.max - covered.min) / count;
+  table.nodes_per_scalar = static_cast<float>(map.scale / width);
+  fill_color_variation(bins, table);
+
+  double total = 0.0;
+  for (const Density& bin : bins) total += bin[0];
+  const double quantum = total > 0.0 ? total / kFullScale : 1.0;
+  table.quantum = static_cast<float>(quantum / width);
+
+  // Sum the bins into antiderivatives, and average neighbouring bins into densities at the nodes.
+  table.entries.resize(2 * (static_cast<std::size_t>(count) + 1));
+  AntiderivativeTable::Entry* antiderivatives = table.entries.data();
+  AntiderivativeTable::Entry* densities = antiderivatives + count + 1;
+  Density sum{};
+  for (std::int32_t i = 0; i <= count; ++i) {
+    const Density& left = bins[std::max(i - 1, 0)];
+    const Density& right = bins[std::min(i, count - 1)];
+    for (int channel = 0; channel < 4; ++channel) {
+      antiderivatives[i][channel] = static_cast<std::int32_t>(std::lround(sum[channel] / quantum));
+      densities[i][channel] =
+          std::bit_cast<std::int32_t>(static_cast<float>(0.5 * (left[channel] + right[channel]) / width));
+      if (i < count) sum[channel] += bins[i][channel];
+    }
+  }
+  const Density below = density_of(eval_optical_function(function, covered.min));
+  const Density above = density_of(eval_optical_function(function, covered.max));
+  for (int channel = 0; channel < 4; ++channel) {
+    table.density_below[channel] = static_cast<float>(below[channel]);
+    table.density_above[channel] = static_cast<float>(above[channel]);
+  }
+  return table;
+}
+
+ControlPointTable build_control_point_table(const OpticalFunction& function, const ScalarMap& map) {
+  constexpr std::int32_t kBuckets = 4096;
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto& points = function.points;
+  ControlPointTable table;
+
+  const auto add_interval = [&](float start, const OpticalPoint& a, const OpticalPoint* b) {
+    table.starts.push_back(start);
+    table.references.push_back(map.stored_from_value(a.value));
+    table.densities_front.push_back({static_cast<float>(a.extinction), static_cast<float>(a.color[0]),
+                                     static_cast<float>(a.color[1]), static_cast<float>(a.color[2])});
+    std::array<float, 4> slope{};
+    if (b) {
+      const double scale = map.scale / (b->value - a.value);
+      slope = {static_cast<float>((b->extinction - a.extinction) * scale),
+               static_cast<float>((b->color[0] - a.color[0]) * scale),
+               static_cast<float>((b->color[1] - a.color[1]) * scale),
+               static_cast<float>((b->color[2] - a.color[2]) * scale)};
+    }
+    table.slopes.push_back(slope);
+  };
+  add_interval(-kInfinity, points.front(), nullptr);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const float start = map.stored_from_value(points[i].value);
+    if (map.stored_from_value(points[i + 1].value) > start) add_interval(start, points[i], &points[i + 1]);
+  }
+  add_interval(map.stored_from_value(points.back().value), points.back(), nullptr);
+  table.interval_count = static_cast<std::int32_t>(table.starts.size());
+  table.starts.push_back(kInfinity);
+
+  // Remember for each bucket of scalars the interval that its lower end lies in.
+  table.first = map.stored_from_value(points.front().value);
+  const float width = map.stored_from_value(points.back().value) - table.first;
+  table.buckets_per_scalar = width > 0.0f ? static_cast<float>(kBuckets) / width : 0.0f;
+  table.first_interval.resize(kBuckets);
+  std::int32_t interval = 0;
+  for (std::int32_t bucket = 0; bucket < kBuckets; ++bucket) {
+    // One bucket early: the bucket of a scalar is computed with rounding.
+    const float lower = table.first + width * (static_cast<float>(bucket - 1) / kBuckets);
+    while (interval + 1 < table.interval_count && table.starts[interval + 1] <= lower) ++interval;
+    table.first_interval[bucket] = bucket == 0 ? 0 : interval;
+  }
+  return table;
+}
+
+}  // namespace tetravox::optics

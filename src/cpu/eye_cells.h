@@ -1,0 +1,18 @@
+#pragma once
+
+/// The cells around an eye that is inside the mesh.
+
+#include "src/cpu/frame.h"
+#include "src/cpu/kernels/kernels.h"
+
+#include <span>
+#include <vector>
+
+namespace tetravox::cpu {
+
+/// The four faces of every cell that holds the eye of a perspective camera (several where cells overlap), oriented like
+/// the boundary; none where the eye is outside. Walks along the view axis from every boundary face behind the eye.
+std::vector<BoundaryFace> find_eye_cell_faces(const FrameMesh& mesh, std::span<const BoundaryFace> boundary,
+                                              std::size_t cell_count, const CameraFrame& frame);
+
+}  // namespace tetravox::cpu

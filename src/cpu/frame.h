@@ -1,0 +1,41 @@
+#pragma once
+
+/// The mesh and the rays in the camera's frame.
+///
+/// Camera frame: x to the right, y up, z along the view; local length units; origin that of the mesh (not the eye), so
+/// that a distant eye costs no precision. Pixel (column, row) looks along x = column_offset + column_slope * z and
+/// likewise y; slopes are 0 for an orthographic camera.
+
+#include "src/cpu/kernels/kernels.h"
+#include "tetravox/camera.h"
+#include "tetravox/mesh.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace tetravox::cpu {
+
+/// The camera in a mesh's local units.
+struct CameraFrame {
+  std::array<Vector3, 3> axes{};  ///< right, up, forward: unit vectors, world directions
+  Vector3 eye{};                  ///< in the camera frame
+  bool is_orthographic = false;
+  double pixel_step = 0.0;  ///< slope (perspective) or distance (orthographic) between neighbouring pixels
+  int width = 0, height = 0;
+};
+
+CameraFrame make_camera_frame(const PreparedMesh& mesh, const Camera& camera, int width, int height);
+
+/// The arrays that a RayGrid views.
+struct Rays {
+  std::vector<float> column_offset, column_slope, row_offset, row_slope;
+  RayGrid grid;
+};
+
+Rays make_rays(const CameraFrame& frame, double world_per_local);
+
+/// Vertices in the camera frame, [vertices][4]; every element is written once.
+void transform_vertices(const PreparedMesh& mesh, const CameraFrame& frame, float* vertices);
+
+}  // namespace tetravox::cpu

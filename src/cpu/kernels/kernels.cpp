@@ -1,0 +1,91 @@
+#include "src/cpu/kernels/kernels.h"
+
+#include "tetravox/error.h"
+
+#include <array>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+// This file is compiled once for each instruction set: Highway includes it again and again.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "src/cpu/kernels/kernels.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h
+#include <hwy/highway.h>
+
+#include "src/cpu/kernels/rasterize-inl.h"
+#include "src/cpu/kernels/walk-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetravox::cpu {
+namespace HWY_NAMESPACE {
+
+template <class Integrator, bool kCellData>
+WalkStatistics walk(const WalkJob& job) {
+  return Walker<Integrator, kCellData>(job).run();
+}
+
+Kernels make_kernels() {
+  Kernels kernels;
+  kernels.rasterize_face = &rasterize_face;
+  kernels.walk_antiderivative = &walk<AntiderivativeIntegrator, false>;
+  kernels.walk_partial = &walk<PartialIntegrator, false>;
+  kernels.walk_post = &walk<PostIntegrator, false>;
+  kernels.walk_cells = &walk<CellIntegrator, true>;
+  return kernels;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetravox::cpu
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tetravox::cpu {
+
+HWY_EXPORT(make_kernels);
+
+namespace {
+
+struct NamedKernels {
+  std::string name;
+  Kernels kernels;
+};
+
+/// Kernels of every target that this machine supports, best first, made once.
+const std::vector<NamedKernels>& all_kernels() {
+  static const std::vector<NamedKernels> all = [] {
+    std::vector<NamedKernels> made;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::GetChosenTarget().Update(target);
+      made.push_back({hwy::TargetName(target), HWY_DYNAMIC_DISPATCH(make_kernels)()});
+    }
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    return made;
+  }();
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> available_instruction_sets() {
+  std::vector<std::string> names;
+  for (const NamedKernels& named : all_kernels()) names.push_back(named.name);
+  return names;
+}
+
+std::string best_instruction_set() { return all_kernels().front().name; }
+
+const Kernels& kernels_for(const std::string& instruction_set) {
+  std::string names;
+  for (const NamedKernels& named : all_kernels()) {
+    if (instruction_set.empty() || instruction_set == named.name) return named.kernels;
+    names += (names.empty() ? "" : ", ") + named.name;
+  }
+  throw Error(ErrorCode::kInvalidArgument,
+              "instruction set '" + instruction_set + "' is not available here: choose one of " + names);
+}
+
+}  // namespace tetravox::cpu
+#endif

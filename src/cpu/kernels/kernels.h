@@ -1,0 +1,118 @@
+#pragma once
+
+/// What the vector code is given and what it offers: plain pointers in, no vector type out.
+///
+/// The kernels are compiled once for each instruction set and chosen at run time (dispatch.cpp). All of them use the
+/// same operations in the same order, without fused multiply-add, so that every instruction set gives the same bits.
+
+#include "src/optics/antiderivative_table.h"
+#include "src/optics/transparency_table.h"
+#include "tetravox/mesh.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tetravox::cpu {
+
+/// Pixels are drawn in square tiles.
+inline constexpr int kTileSize = 32;
+
+/// Rays of a frame. Camera frame: x to the right, y up, z along the view, local length units, origin that of the mesh.
+/// The ray of pixel (column, row) is x = column_offset + column_slope * z, y = row_offset + row_slope * z.
+struct RayGrid {
+  int width = 0, height = 0;
+  const float* column_offset = nullptr;  ///< [width], padded to whole vectors; likewise the other three
+  const float* column_slope = nullptr;
+  const float* row_offset = nullptr;  ///< [height]
+  const float* row_slope = nullptr;
+  float z_near = 0.0f;           ///< rays start at this z: the eye, or the plane of an orthographic camera
+  float world_per_local = 1.0f;  ///< length
+};
+
+/// The mesh as seen by the camera.
+struct FrameMesh {
+  const float* vertices = nullptr;  ///< [vertices][4] x, y, z in the camera frame, stored scalar
+  std::uint32_t last_vertex = 0;
+  const TetrahedronLinks* cells = nullptr;
+  const float* cell_scalars = nullptr;  ///< [cells], or null for point data
+  const BoundaryFace* faces = nullptr;  ///< where rays enter: the boundary, then the faces of cells around the eye
+};
+
+/// One of these is used, by the integrator.
+struct IntegratorTables {
+  const optics::AntiderivativeTable* antiderivative = nullptr;
+  const optics::ControlPointTable* control_points = nullptr;
+  const optics::TransparencyTable* transparency = nullptr;
+  float tolerance = 5e-4f;
+  int samples = 8;
+};
+
+/// Where a ray enters the mesh.
+struct Entry {
+  std::uint32_t face = 0;
+  float depth = 0.0f;
+};
+
+/// A tile's rays, each with its entries in order of depth.
+struct TileRays {
+  struct Ray {
+    int column = 0, row = 0;
+    std::uint32_t begin = 0, end = 0;  ///< into entries
+  };
+  std::vector<Ray> rays;
+  std::vector<Entry> entries;
+};
+
+/// A face of `FrameMesh::faces` found in a pixel.
+struct FaceHit {
+  std::uint32_t pixel = 0;  ///< in the tile: row * kTileSize + column
+  Entry entry;
+};
+
+struct TileBounds {
+  int column_begin = 0, column_end = 0, row_begin = 0, row_end = 0;
+};
+
+/// A face with the pixels that it may cover.
+struct BinnedFace {
+  std::uint32_t face = 0;
+  TileBounds bounds;
+};
+
+struct WalkStatistics {
+  std::uint64_t segments = 0;
+  std::uint64_t stopped_rays = 0;
+};
+
+struct WalkJob {
+  const FrameMesh* mesh = nullptr;
+  const RayGrid* rays = nullptr;
+  const IntegratorTables* tables = nullptr;
+  const TileRays* tile = nullptr;
+  float* pixels = nullptr;  ///< [height][width][4], premultiplied
+  bool use_early_ray_termination = true;
+};
+
+/// The kernels of one instruction set. All are safe to call from many threads.
+struct Kernels {
+  /// Appends to `hits` the pixels of `bounds` whose ray meets `face` from its outer side.
+  void (*rasterize_face)(const FrameMesh& mesh, const RayGrid& rays, const BinnedFace& face, int tile_column,
+                         int tile_row, std::vector<FaceHit>& hits) = nullptr;
+  WalkStatistics (*walk_antiderivative)(const WalkJob& job) = nullptr;
+  WalkStatistics (*walk_partial)(const WalkJob& job) = nullptr;
+  WalkStatistics (*walk_post)(const WalkJob& job) = nullptr;
+  WalkStatistics (*walk_cells)(const WalkJob& job) = nullptr;  ///< cell data, exact with every integrator
+};
+
+/// Names of the instruction sets that were compiled in and that this machine has, best first.
+std::vector<std::string> available_instruction_sets();
+
+/// The kernels of an instruction set; the best for an empty name.
+/// @throws Error (kInvalidArgument) that lists the names there are.
+const Kernels& kernels_for(const std::string& instruction_set);
+
+/// The name that `kernels_for("")` stands for.
+std::string best_instruction_set();
+
+}  // namespace tetravox::cpu

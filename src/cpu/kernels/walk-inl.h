@@ -1,0 +1,395 @@
+// The source `walk`: rays go from tetrahedron to tetrahedron, a vector of rays at a time.
+
+#if defined(TETRAVOX_CPU_WALK_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETRAVOX_CPU_WALK_INL
+#undef TETRAVOX_CPU_WALK_INL
+#else
+#define TETRAVOX_CPU_WALK_INL
+#endif
+
+#include "src/cpu/kernels/integrators-inl.h"
+#include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/vector_math-inl.h"
+
+#include <algorithm>
+#include <cmath>
+
+HWY_BEFORE_NAMESPACE();
+namespace tetravox::cpu {
+namespace HWY_NAMESPACE {
+
+/// Below this transmittance a ray is looked at for early termination.
+constexpr float kDim = 1e-4f;
+
+/// The rays of a vector between two rounds of filling, in memory.
+///
+/// The triangle (a, b, c) is the face that the ray is about to enter through; its vertices are sheared so that the
+/// ray is the z axis: x' = x - slope * z - offset. Seen along the ray it runs counter-clockwise: the products
+/// a' x b', b' x c', c' x a' are not negative, and are the (unscaled) barycentric weights of c, a, b.
+template <class Integrator>
+struct Lanes {
+  HWY_ALIGN std::uint32_t id[3][kLanes];
+  HWY_ALIGN float x[3][kLanes], y[3][kLanes], z[3][kLanes], scalar[3][kLanes];
+  HWY_ALIGN float weight[3][kLanes];
+  HWY_ALIGN std::uint32_t cell[kLanes];
+  HWY_ALIGN float z_front[kLanes], scalar_front[kLanes];
+  HWY_ALIGN float red[kLanes], green[kLanes], blue[kLanes], transmittance[kLanes];
+  HWY_ALIGN float x_offset[kLanes], x_slope[kLanes], y_offset[kLanes], y_slope[kLanes];
+  HWY_ALIGN float world_per_z[kLanes];    ///< length of the ray for one unit of z
+  HWY_ALIGN float z_checked[kLanes];      ///< z_front when progress was last checked
+  HWY_ALIGN std::uint32_t alive[kLanes];  ///< all bits set while the ray is in a cell
+  std::uint32_t ray[kLanes];              ///< index into TileRays::rays, or kNoRay
+  std::uint32_t next_entry[kLanes];
+};
+
+constexpr std::uint32_t kNoRay = 0xFFFFFFFFu;
+
+/// The same, in registers.
+template <class Integrator>
+struct State {
+  Uint id[3];
+  Float x[3], y[3], z[3], scalar[3], weight[3];
+  Uint cell;
+  Float z_front, scalar_front;
+  Accumulated sum;
+  typename Integrator::Front front;
+  Mask alive;
+};
+
+template <class Integrator, bool kCellData>
+class Walker {
+ public:
+  explicit Walker(const WalkJob& job) : job_(job), mesh_(*job.mesh), integrator_(*job.tables) {}
+
+  WalkStatistics run() {
+    for (std::size_t i = 0; i < kLanes; ++i) clear(i);
+    while (fill()) march();
+    return statistics_;
+  }
+
+ private:
+  using RayState = State<Integrator>;
+
+  // ---- filling lanes, one at a time
+  // --------------------------------------------------------------------------------------------
+
+  void clear(std::size_t lane) {
+    lanes_.ray[lane] = kNoRay;
+    lanes_.alive[lane] = 0;
+    lanes_.cell[lane] = 0;
+    for (int k = 0; k < 3; ++k) {
+      lanes_.id[k][lane] = 0;
+      lanes_.x[k][lane] = lanes_.y[k][lane] = lanes_.z[k][lane] = lanes_.scalar[k][lane] = lanes_.weight[k][lane] =
+          0.0f;
+    }
+    lanes_.z_front[lane] = lanes_.z_checked[lane] = lanes_.scalar_front[lane] = 0.0f;
+    lanes_.red[lane] = lanes_.green[lane] = lanes_.blue[lane] = lanes_.transmittance[lane] = 0.0f;
+    lanes_.x_offset[lane] = lanes_.x_slope[lane] = lanes_.y_offset[lane] = lanes_.y_slope[lane] = 0.0f;
+    lanes_.world_per_z[lane] = 0.0f;
+  }
+
+  /// Gives every idle lane its ray's next entry, or the next ray. False when nothing is left to walk.
+  bool fill() {
+    bool any = false;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (!lanes_.alive[lane]) advance(lane);
+      any |= lanes_.alive[lane] != 0;
+    }
+    return any;
+  }
+
+  void advance(std::size_t lane) {
+    const TileRays& tile = *job_.tile;
+    if (lanes_.ray[lane] != kNoRay) {
+      if (lanes_.next_entry[lane] < tile.rays[lanes_.ray[lane]].end) return enter(lane);
+      write_pixel(lane);
+    }
+    if (next_ray_ == tile.rays.size()) return clear(lane);
+    start_ray(lane, static_cast<std::uint32_t>(next_ray_++));
+    enter(lane);
+  }
+
+  void start_ray(std::size_t lane, std::uint32_t index) {
+    const TileRays::Ray& ray = job_.tile->rays[index];
+    const RayGrid& grid = *job_.rays;
+    lanes_.ray[lane] = index;
+    lanes_.next_entry[lane] = ray.begin;
+    lanes_.red[lane] = lanes_.green[lane] = lanes_.blue[lane] = 0.0f;
+    lanes_.transmittance[lane] = 1.0f;
+    const float x_slope = grid.column_slope[ray.column], y_slope = grid.row_slope[ray.row];
+    lanes_.x_offset[lane] = grid.column_offset[ray.column];
+    lanes_.x_slope[lane] = x_slope;
+    lanes_.y_offset[lane] = grid.row_offset[ray.row];
+    lanes_.y_slope[lane] = y_slope;
+    lanes_.world_per_z[lane] = grid.world_per_local * std::sqrt(1.0f + x_slope * x_slope + y_slope * y_slope);
+  }
+
+  /// Puts the lane in front of the cell behind its next entry.
+  void enter(std::size_t lane) {
+    const BoundaryFace& face = mesh_.faces[job_.tile->entries[lanes_.next_entry[lane]++].face];
+    float x[3], y[3], z[3], scalar[3];
+    for (int k = 0; k < 3; ++k) {
+      const float* vertex = mesh_.vertices + 4 * static_cast<std::size_t>(face.vertices[k]);
+      z[k] = vertex[2];
+      scalar[k] = vertex[3];
+      x[k] = vertex[0] - lanes_.x_slope[lane] * z[k] - lanes_.x_offset[lane];
+      y[k] = vertex[1] - lanes_.y_slope[lane] * z[k] - lanes_.y_offset[lane];
+      lanes_.id[k][lane] = face.vertices[k];
+    }
+    float total = 0.0f, depth = 0.0f, value = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      const float weight = std::max(x[i] * y[j] - y[i] * x[j], 0.0f);
+      lanes_.weight[k][lane] = weight;
+      total += weight;
+      depth += weight * z[k];
+      value += weight * scalar[k];
+      lanes_.x[k][lane] = x[k];
+      lanes_.y[k][lane] = y[k];
+      lanes_.z[k][lane] = z[k];
+      lanes_.scalar[k][lane] = scalar[k];
+    }
+    lanes_.cell[lane] = face.cell;
+    lanes_.z_front[lane] = total > 0.0f ? depth / total : z[0];
+    lanes_.z_checked[lane] = -std::numeric_limits<float>::infinity();
+    lanes_.scalar_front[lane] = total > 0.0f ? value / total : scalar[0];
+    lanes_.alive[lane] = 0xFFFFFFFFu;
+  }
+
+  void write_pixel(std::size_t lane) {
+    const TileRays::Ray& ray = job_.tile->rays[lanes_.ray[lane]];
+    float* pixel = job_.pixels + 4 * (static_cast<std::size_t>(ray.row) * job_.rays->width + ray.column);
+    pixel[0] = lanes_.red[lane];
+    pixel[1] = lanes_.green[lane];
+    pixel[2] = lanes_.blue[lane];
+    pixel[3] = 1.0f - lanes_.transmittance[lane];
+  }
+
+  // ---- between memory and registers
+  // ---------------------------------------------------------------------------------------------
+
+  HWY_INLINE RayState load() const {
+    RayState s;
+    for (int k = 0; k < 3; ++k) {
+      s.id[k] = hn::Load(kUint, lanes_.id[k]);
+      s.x[k] = hn::Load(kFloat, lanes_.x[k]);
+      s.y[k] = hn::Load(kFloat, lanes_.y[k]);
+      s.z[k] = hn::Load(kFloat, lanes_.z[k]);
+      s.scalar[k] = hn::Load(kFloat, lanes_.scalar[k]);
+      s.weight[k] = hn::Load(kFloat, lanes_.weight[k]);
+    }
+    s.cell = hn::Load(kUint, lanes_.cell);
+    s.z_front = hn::Load(kFloat, lanes_.z_front);
+    s.scalar_front = hn::Load(kFloat, lanes_.scalar_front);
+    s.sum = {hn::Load(kFloat, lanes_.red), hn::Load(kFloat, lanes_.green), hn::Load(kFloat, lanes_.blue),
+             hn::Load(kFloat, lanes_.transmittance)};
+    s.front = integrator_.front_at(s.scalar_front);
+    s.alive = float_mask(hn::Ne(hn::Load(kUint, lanes_.alive), hn::Zero(kUint)));
+    return s;
+  }
+
+  HWY_INLINE void store(const RayState& s) {
+    for (int k = 0; k < 3; ++k) {
+      hn::Store(s.id[k], kUint, lanes_.id[k]);
+      hn::Store(s.x[k], kFloat, lanes_.x[k]);
+      hn::Store(s.y[k], kFloat, lanes_.y[k]);
+      hn::Store(s.z[k], kFloat, lanes_.z[k]);
+      hn::Store(s.scalar[k], kFloat, lanes_.scalar[k]);
+      hn::Store(s.weight[k], kFloat, lanes_.weight[k]);
+    }
+    hn::Store(s.cell, kUint, lanes_.cell);
+    hn::Store(s.z_front, kFloat, lanes_.z_front);
+    hn::Store(s.scalar_front, kFloat, lanes_.scalar_front);
+    hn::Store(s.sum.red, kFloat, lanes_.red);
+    hn::Store(s.sum.green, kFloat, lanes_.green);
+    hn::Store(s.sum.blue, kFloat, lanes_.blue);
+    hn::Store(s.sum.transmittance, kFloat, lanes_.transmittance);
+    hn::Store(hn::IfThenElseZero(uint_mask(s.alive), hn::Set(kUint, 0xFFFFFFFFu)), kUint, lanes_.alive);
+  }
+
+  // ---- walking
+  // ------------------------------------------------------------------------------------------------------------------
+
+  /// Walks until a quarter of the lanes is idle (or all are), then puts everything back into memory.
+  void march() {
+    constexpr std::size_t kIdle = std::max<std::size_t>(1, kLanes / 4);
+    RayState s = load();
+    const std::size_t wanted = hn::CountTrue(kFloat, s.alive);
+    const std::size_t enough = next_ray_ < job_.tile->rays.size() ? (wanted > kIdle ? wanted - kIdle : 0) : 0;
+    for (;;) {
+      const std::size_t walking = hn::CountTrue(kFloat, s.alive);
+      if (walking <= enough) break;
+      statistics_.segments += walking;
+      step(s);
+      if (HWY_UNLIKELY(++steps_ % kCheckedSteps == 0)) stop_stuck_rays(s);
+    }
+    store(s);
+  }
+
+  /// One cell for every ray.
+  HWY_INLINE void step(RayState& s) {
+    // The vertex opposite the entry face: by exclusive or with the three that are known.
+    const Uint five_cells = hn::Add(hn::ShiftLeft<2>(s.cell), s.cell);
+    const auto* links = reinterpret_cast<const std::uint32_t*>(mesh_.cells);
+    const Uint all = hn::GatherIndex(kUint, links, hn::BitCast(kInt, five_cells));
+    const Uint d =
+        hn::Min(hn::Xor(hn::Xor(all, s.id[0]), hn::Xor(s.id[1], s.id[2])), hn::Set(kUint, mesh_.last_vertex));
+    const Record vertex = load_records(mesh_.vertices, d);
+    const Float x_slope = hn::Load(kFloat, lanes_.x_slope), y_slope = hn::Load(kFloat, lanes_.y_slope);
+    const Float x = hn::Sub(hn::Sub(vertex.x, hn::Mul(x_slope, vertex.z)), hn::Load(kFloat, lanes_.x_offset));
+    const Float y = hn::Sub(hn::Sub(vertex.y, hn::Mul(y_slope, vertex.z)), hn::Load(kFloat, lanes_.y_offset));
+
+    // On which side of the edges (a, d), (b, d), (c, d) does the ray pass? The same two vertices give the same product,
+    // up to its sign, in every cell: the walk is watertight.
+    Float product[3];
+    Mask positive[3];
+    for (int k = 0; k < 3; ++k) {
+      product[k] = hn::Sub(hn::Mul(s.x[k], y), hn::Mul(s.y[k], x));
+      positive[k] = hn::Ge(product[k], constant(0.0f));
+    }
+
+    // The ray leaves through the face without a, b or c: that vertex is replaced by d.
+    const Mask out_a = hn::AndNot(positive[1], positive[2]);
+    const Mask out_c = hn::AndNot(positive[0], positive[1]);
+    const Mask out_b = hn::Not(hn::Or(out_a, out_c));
+    const Uint replaced = hn::IfThenElse(uint_mask(out_a), s.id[0], hn::IfThenElse(uint_mask(out_c), s.id[2], s.id[1]));
+
+    // Neighbours are stored by rank of the vertex opposite to the face.
+    Uint rank = hn::Set(kUint, 1);
+    for (int k = 0; k < 3; ++k) rank = hn::Add(rank, hn::IfThenElseZero(hn::Lt(s.id[k], replaced), hn::Set(kUint, 1)));
+    rank = hn::Add(rank, hn::IfThenElseZero(hn::Lt(d, replaced), hn::Set(kUint, 1)));
+    const Uint neighbour = hn::GatherIndex(kUint, links, hn::BitCast(kInt, hn::Add(five_cells, rank)));
+
+    replace_vertex(s, out_a, out_b, out_c, d, x, y, vertex, product);
+
+    // Depth and scalar where the ray leaves.
+    const Float total = hn::Add(hn::Add(s.weight[0], s.weight[1]), s.weight[2]);
+    const Float inverse = hn::Div(constant(1.0f), total);
+    const Mask valid = hn::Gt(total, constant(0.0f));
+    const auto interpolate = [&](const Float v[3]) {
+      return hn::Mul(multiply_add(s.weight[2], v[2], multiply_add(s.weight[1], v[1], hn::Mul(s.weight[0], v[0]))),
+                     inverse);
+    };
+    const Float z_back = hn::Max(hn::IfThenElse(valid, interpolate(s.z), s.z_front), s.z_front);
+    Segments segment;
+    if constexpr (kCellData) {
+      segment.scalar_back = segment.scalar_front =
+          hn::GatherIndex(kFloat, mesh_.cell_scalars, hn::BitCast(kInt, s.cell));
+    } else {
+      segment.scalar_front = s.scalar_front;
+      segment.scalar_back = hn::IfThenElse(valid, interpolate(s.scalar), s.scalar_front);
+    }
+    segment.length = hn::Mul(hn::Sub(z_back, s.z_front), hn::Load(kFloat, lanes_.world_per_z));
+    segment.length = hn::IfThenElseZero(s.alive, segment.length);
+    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, hn::Lt(s.z_front, constant(job_.rays->z_near)))))
+      clip_near(s, z_back, segment);
+
+    integrator_.integrate(segment, s.front, s.sum);
+    s.z_front = z_back;
+    s.scalar_front = segment.scalar_back;
+
+    // On to the neighbour. Idle lanes stay in a cell that exists.
+    const hn::Mask<UintTag> outside = hn::Eq(neighbour, hn::Set(kUint, kNoCell));
+    s.cell = hn::IfThenZeroElse(outside, neighbour);
+    s.alive = hn::AndNot(float_mask(outside), s.alive);
+    if (job_.use_early_ray_termination) terminate_early(s);
+  }
+
+  HWY_INLINE void replace_vertex(RayState& s, Mask out_a, Mask out_b, Mask out_c, Uint d, Float x, Float y,
+                                 const Record& vertex, const Float product[3]) {
+    const Mask out[3] = {out_a, out_b, out_c};
+    // Edge products of the new face; those that keep their edge keep their weight.
+    const Float zero = constant(0.0f);
+    const auto clamp = [&](Float value) { return hn::Max(value, zero); };
+    const Float minus_a = hn::Sub(zero, product[0]), minus_b = hn::Sub(zero, product[1]),
+                minus_c = hn::Sub(zero, product[2]);
+    s.weight[0] = hn::IfThenElse(out_a, s.weight[0], clamp(hn::IfThenElse(out_b, minus_c, product[1])));
+    s.weight[1] = hn::IfThenElse(out_b, s.weight[1], clamp(hn::IfThenElse(out_c, minus_a, product[2])));
+    s.weight[2] = hn::IfThenElse(out_c, s.weight[2], clamp(hn::IfThenElse(out_a, minus_b, product[0])));
+    for (int k = 0; k < 3; ++k) {
+      s.id[k] = hn::IfThenElse(uint_mask(out[k]), d, s.id[k]);
+      s.x[k] = hn::IfThenElse(out[k], x, s.x[k]);
+      s.y[k] = hn::IfThenElse(out[k], y, s.y[k]);
+      s.z[k] = hn::IfThenElse(out[k], vertex.z, s.z[k]);
+      s.scalar[k] = hn::IfThenElse(out[k], vertex.w, s.scalar[k]);
+    }
+  }
+
+  /// Cuts away what lies before the eye (or before the plane of an orthographic camera).
+  HWY_NOINLINE void clip_near(RayState& s, Float z_back, Segments& segment) const {
+    const Float z_near = constant(job_.rays->z_near);
+    const Mask before = hn::Lt(s.z_front, z_near);
+    const Float depth = hn::Sub(z_back, s.z_front);
+    const Float t = hn::Min(
+        hn::Div(hn::Sub(z_near, s.z_front), hn::IfThenElse(hn::Gt(depth, constant(0.0f)), depth, constant(1.0f))),
+        constant(1.0f));
+    const Float scalar = multiply_add(t, hn::Sub(segment.scalar_back, segment.scalar_front), segment.scalar_front);
+    const Mask crosses = hn::And(before, hn::Gt(z_back, z_near));
+    segment.scalar_front = hn::IfThenElse(crosses, scalar, segment.scalar_front);
+    const Float visible =
+        hn::Mul(hn::Max(hn::Sub(z_back, z_near), constant(0.0f)), hn::Load(kFloat, lanes_.world_per_z));
+    segment.length = hn::IfThenElse(before, hn::IfThenElseZero(s.alive, visible), segment.length);
+    const auto clipped = integrator_.front_at(segment.scalar_front);
+    select_front(before, clipped, s.front);
+  }
+
+  static HWY_INLINE void select_front(Mask mask, const typename AntiderivativeIntegrator::Front& from,
+                                      typename AntiderivativeIntegrator::Front& to) {
+    to.node = hn::IfThenElse(int_mask(mask), from.node, to.node);
+    for (int i = 0; i < 4; ++i) to.sums[i] = hn::IfThenElse(int_mask(mask), from.sums[i], to.sums[i]);
+  }
+  template <class Front>
+  static HWY_INLINE void select_front(Mask, const Front&, Front&) {}
+
+  /// Stops rays of which no 8-bit pixel can change any more: whatever follows adds between nothing and the
+  /// transmittance to each channel, over any background, with or without alpha.
+  HWY_INLINE void terminate_early(RayState& s) const {
+    const Mask dim = hn::And(s.alive, hn::Lt(s.sum.transmittance, constant(kDim)));
+    if (HWY_LIKELY(hn::AllFalse(kFloat, dim))) return;
+    // Three transmittances bound the channel divided by alpha, too, and rounding.
+    const Float reach = hn::Mul(constant(3.0f), s.sum.transmittance);
+    const auto settled = [&](Float channel) {
+      const Float low = hn::Floor(multiply_add(hn::Sub(channel, constant(1e-6f)), constant(255.0f), constant(0.5f)));
+      const Float high =
+          hn::Floor(multiply_add(hn::Add(hn::Add(channel, reach), constant(1e-6f)), constant(255.0f), constant(0.5f)));
+      return hn::Eq(low, high);
+    };
+    const Mask done = hn::And(hn::And(settled(s.sum.red), settled(s.sum.green)), settled(s.sum.blue));
+    s.alive = hn::AndNot(hn::And(dim, done), s.alive);
+    // A ray that is done has no further entry.
+    const Mask ended = hn::And(dim, done);
+    if (!hn::AllFalse(kFloat, ended)) forget_entries(ended);
+  }
+
+  void forget_entries(Mask ended) const {
+    HWY_ALIGN std::uint32_t lane[kLanes];
+    hn::Store(hn::IfThenElseZero(uint_mask(ended), hn::Set(kUint, 1)), kUint, lane);
+    for (std::size_t i = 0; i < kLanes; ++i)
+      if (lane[i] && lanes_.ray[i] != kNoRay) lanes_.next_entry[i] = job_.tile->rays[lanes_.ray[i]].end;
+  }
+
+  /// A ray that has not moved for many cells goes round in circles, which only damaged meshes allow: stop it.
+  HWY_NOINLINE void stop_stuck_rays(RayState& s) {
+    const Mask stuck = hn::And(s.alive, hn::Le(s.z_front, hn::Load(kFloat, lanes_.z_checked)));
+    hn::Store(s.z_front, kFloat, lanes_.z_checked);
+    if (hn::AllFalse(kFloat, stuck)) return;
+    statistics_.stopped_rays += hn::CountTrue(kFloat, stuck);
+    s.alive = hn::AndNot(stuck, s.alive);
+  }
+
+  static constexpr std::uint64_t kCheckedSteps = 4096;
+
+  const WalkJob& job_;
+  const FrameMesh& mesh_;
+  Integrator integrator_;
+  mutable Lanes<Integrator> lanes_;
+  std::size_t next_ray_ = 0;
+  std::uint64_t steps_ = 0;
+  WalkStatistics statistics_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetravox::cpu
+HWY_AFTER_NAMESPACE();
+
+#endif
