@@ -1,0 +1,86 @@
+#include "apps/tetravox/empty_picture.h"
+
+#include "apps/tetravox/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace tetravox::tool {
+namespace {
+
+constexpr float kVisible = 0.5f / 255.0f;  // half an 8-bit step
+
+/// Largest opacity of a pixel, and largest difference from the background once composited over it.
+struct Visibility {
+  float alpha = 0.0f;
+  float contrast = 0.0f;
+};
+
+Visibility measure_visibility(const Image& image, const Color& background) {
+  Visibility result;
+  for (std::size_t i = 0; i + 3 < image.pixels.size(); i += 4) {
+    const float* pixel = image.pixels.data() + i;
+    result.alpha = std::max(result.alpha, pixel[3]);
+    for (std::size_t c = 0; c < 3; ++c)
+      result.contrast = std::max(result.contrast, std::abs(pixel[c] - pixel[3] * static_cast<float>(background[c])));
+  }
+  return result;
+}
+
+/// Largest extinction that the function has anywhere in the range.
+double largest_extinction(const OpticalFunction& function, const ValueRange& range) {
+  double largest = std::max(eval_optical_function(function, range.min).extinction,
+                            eval_optical_function(function, range.max).extinction);
+  for (const OpticalPoint& point : function.points)
+    if (point.value >= range.min && point.value <= range.max) largest = std::max(largest, point.extinction);
+  return largest;
+}
+
+std::string bounds_text(const PreparedMesh& mesh) {
+  return "x " + format_range(mesh.bounds[0]) + ", y " + format_range(mesh.bounds[1]) + ", z " +
+         format_range(mesh.bounds[2]);
+}
+
+std::string explain_transparent(const PictureContext& context) {
+  if (context.statistics.rays == 0)
+    return "the picture is empty: the camera does not see the data (" + bounds_text(context.mesh) +
+           "); leave the camera out for a view of everything";
+  const ValueRange& range = context.mesh.scalar_range;
+  if (largest_extinction(context.completed.optical_function, range) <= 0.0)
+    return "the picture is empty: the transfer function is transparent over the data's range " + format_range(range) +
+           "; give --range " + format_number(range.min) + "," + format_number(range.max) +
+           " or another --transfer-function";
+  return "the picture is empty: the transfer function is too thin to be seen; give a smaller --unit-distance or "
+         "larger extinctions";
+}
+
+/// Names of other arrays, to try instead of a constant one.
+std::string other_arrays(const DatasetInfo& info, const std::string& name) {
+  std::string list;
+  for (const ArrayInfo& array : info.arrays)
+    if (array.name != name && array.magnitude_range.min < array.magnitude_range.max && list.size() < 200)
+      list += (list.empty() ? "" : ", ") + array.name;
+  return list;
+}
+
+}  // namespace
+
+std::vector<std::string> explain_picture(const Image& image, const PictureContext& context) {
+  std::vector<std::string> lines;
+  const ValueRange& range = context.mesh.scalar_range;
+  if (!(range.min < range.max)) {
+    const std::string& name = context.scene.data.array.name;
+    const std::string others = other_arrays(context.info, name);
+    lines.push_back("the array '" + name + "' is " + format_number(range.min) + " everywhere" +
+                    (others.empty() ? "" : "; others to draw with --array: " + others));
+  }
+  const Visibility visibility = measure_visibility(image, context.scene.background);
+  if (visibility.alpha < kVisible)
+    lines.push_back(explain_transparent(context));
+  else if (visibility.contrast < kVisible)
+    lines.push_back("the picture shows only its background's colour; give another --background or --transfer-function");
+  return lines;
+}
+
+}  // namespace tetravox::tool

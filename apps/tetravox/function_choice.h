@@ -1,0 +1,20 @@
+#pragma once
+
+/// Which transfer function is drawn: the command line's, the scene's, or one made from the data.
+
+#include "apps/tetravox/options.h"
+
+#include "tetravox/mesh.h"
+#include "tetravox/scene.h"
+
+namespace tetravox::tool {
+
+/// Puts the transfer function that the options ask for into `scene`; leaves it as it is where they ask for nothing.
+/// @throws Error or UsageError that names the option.
+void choose_function(const FunctionOptions& options, const PreparedMesh& mesh, Scene& scene);
+
+/// The function with its values stretched from its own ends to those of `range`, evenly in the value or, along a
+/// logarithm, in the value's logarithm (then cut into 16 linear pieces between points).
+TransferFunction stretch_function(const TransferFunction& function, const ValueRange& range, bool use_logarithm);
+
+}  // namespace tetravox::tool

@@ -1,0 +1,120 @@
+#include "apps/tetravox/commands.h"
+#include "apps/tetravox/json_report.h"
+#include "apps/tetravox/memory_plan.h"
+#include "apps/tetravox/progress_line.h"
+#include "apps/tetravox/scene_input.h"
+#include "apps/tetravox/text.h"
+
+#include "tetravox/error.h"
+#include "tetravox/io.h"
+
+#include <cstddef>
+#include <iostream>
+#include <optional>
+#include <utility>
+
+namespace tetravox::tool {
+namespace {
+
+std::string row(const std::string& name, const std::string& text) {
+  return "  " + name + std::string(10 - name.size(), ' ') + text + "\n";
+}
+
+std::string cells_text(const DatasetInfo& info) {
+  std::string text = format_count(info.cell_count);
+  if (info.block_count > 1) text += " in " + format_count(info.block_count) + " blocks";
+  std::string separator = ": ";
+  for (const auto& [type, count] : info.cells_by_type)
+    text +=
+        std::exchange(separator, ", ") + format_count(count) + " " + cell_type_name(static_cast<std::uint8_t>(type));
+  return text;
+}
+
+std::string left_out_text(const LeftOut& left_out) {
+  std::string text;
+  const auto add = [&text](std::uint64_t count, const std::string& what) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + format_count(count) + " " + what;
+  };
+  add(left_out.lower_dimension, "cells without volume (vertices, lines, surfaces)");
+  add(left_out.ghost, "ghost cells");
+  add(left_out.blanked, "blanked cells");
+  add(left_out.unsupported, "volume cells of a type that is not known");
+  return text;
+}
+
+std::string times_text(const DatasetInfo& info) {
+  constexpr std::size_t kShown = 8;
+  std::string text = format_count(info.times.size()) + ":";
+  for (std::size_t i = 0; i < info.times.size() && i < kShown; ++i)
+    text.append(" ").append(format_number(info.times[i], 9)).append(i == info.time_index ? "*" : "");
+  if (info.times.size() > kShown) text += " ... " + format_number(info.times.back(), 9);
+  return text + "  (* was read; --time picks another)";
+}
+
+std::string array_text(const ArrayInfo& array, bool is_default) {
+  std::string text = array.name + (is_default ? " *" : "") + "  " +
+                     (array.association == Association::kPoint ? "point" : "cell") + "  " + array.type;
+  if (array.components > 1) text += " x " + std::to_string(array.components);
+  text += array.components > 1 ? "  magnitude " : "  ";
+  text += format_range(array.magnitude_range);
+  if (array.components > 1 && array.components <= 4)
+    for (std::size_t i = 0; i < array.component_ranges.size(); ++i)
+      text += ", " + std::to_string(i) + ": " + format_range(array.component_ranges[i]);
+  if (array.nan_count > 0) text += ", " + format_count(array.nan_count) + " not finite";
+  return text;
+}
+
+std::string memory_text(const MemoryPlan& plan) {
+  return "prepare " + format_bytes(plan.prepare) + ", then mesh " + format_bytes(plan.resident) + " + draw " +
+         format_bytes(plan.render) + " (" + std::to_string(plan.width) + " x " + std::to_string(plan.height) + "); " +
+         format_bytes(plan.available) + " are free";
+}
+
+std::string format_info(const DatasetInfo& info, std::optional<std::size_t> default_array,
+                        const std::optional<MemoryPlan>& memory) {
+  std::string text = info.source + ": " + info.format + "\n";
+  text += row("cells", cells_text(info));
+  text += row("points", format_count(info.point_count));
+  text += row("bounds", "x " + format_range(info.bounds[0]) + ", y " + format_range(info.bounds[1]) + ", z " +
+                            format_range(info.bounds[2]));
+  if (!info.times.empty()) text += row("times", times_text(info));
+  if (const std::string left_out = left_out_text(info.left_out); !left_out.empty()) text += row("left out", left_out);
+  for (std::size_t i = 0; i < info.arrays.size(); ++i)
+    text += row(i == 0 ? "arrays" : "", array_text(info.arrays[i], default_array == i));
+  if (info.arrays.empty()) text += row("arrays", "none: there is nothing to draw");
+  if (default_array) text += row("", "(* is drawn by default)");
+  if (memory) text += row("memory", memory_text(*memory));
+  for (const std::string& note : info.notes) text += row("note", single_line(note));
+  return text;
+}
+
+/// The mesh with its data, for a close estimate; without it where there is no array to draw.
+Dataset read_summary(const SceneInput& input, const Progress& progress) {
+  try {
+    return read_dataset(input.data_path, input.read, progress);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kNothingToDraw && error.code() != ErrorCode::kOutOfMemory) throw;
+  }
+  ReadOptions options = input.read;
+  options.only_info = true;
+  return read_dataset(input.data_path, options, progress);
+}
+
+}  // namespace
+
+void run_info(const InfoOptions& options) {
+  const SceneInput input = load_scene_input(options.input);
+  ProgressLine line(true);
+  const Dataset dataset = read_summary(input, line.progress());
+  throw_if_interrupted();
+  line.clear();
+
+  std::optional<std::size_t> default_array;
+  if (!dataset.info.arrays.empty() && dataset.info.cell_count > 0) default_array = choose_array(dataset.info, {});
+  std::optional<MemoryPlan> memory;
+  if (dataset.mesh.cell_count() > 0) memory = plan_memory(dataset.mesh, input.scene.settings);
+  std::cout << (options.use_json ? format_info_json(dataset.info, default_array, memory)
+                                 : format_info(dataset.info, default_array, memory));
+}
+
+}  // namespace tetravox::tool

@@ -1,0 +1,123 @@
+#include "apps/tetravox/json_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace tetravox::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Largest resident set of this process, or of its children that have ended, bytes.
+std::uint64_t peak_resident_memory(int who) {
+  rusage usage{};
+  getrusage(who, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+/// A number, or null where it is not finite: JSON knows no other.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json range(const ValueRange& values) { return Json::array({number(values.min), number(values.max)}); }
+
+std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+Json array_json(const ArrayInfo& array) {
+  Json json;
+  json["name"] = array.name;
+  json["association"] = array.association == Association::kPoint ? "point" : "cell";
+  json["components"] = array.components;
+  json["type"] = array.type;
+  json["range"] = range(array.magnitude_range);
+  for (const ValueRange& values : array.component_ranges) json["component_ranges"].push_back(range(values));
+  json["nan_count"] = array.nan_count;
+  return json;
+}
+
+}  // namespace
+
+double median_frame_seconds(const PictureStatistics& statistics) {
+  std::vector<double> frames = statistics.frame_seconds;
+  if (frames.empty()) return 0.0;
+  if (frames.size() > 1) frames.erase(frames.begin());
+  std::sort(frames.begin(), frames.end());
+  const std::size_t middle = frames.size() / 2;
+  return frames.size() % 2 == 1 ? frames[middle] : 0.5 * (frames[middle - 1] + frames[middle]);
+}
+
+std::string format_statistics(const PictureStatistics& statistics) {
+  Json json;
+  Json& seconds = json["seconds"];
+  seconds["read"] = statistics.read_seconds;
+  seconds["prepare"] = statistics.prepare_seconds;
+  seconds["transfer_function"] = statistics.transfer_function_seconds;
+  seconds["first_frame"] = statistics.frame_seconds.empty() ? 0.0 : statistics.frame_seconds.front();
+  seconds["frame"] = median_frame_seconds(statistics);
+  seconds["write"] = statistics.write_seconds;
+  seconds["total"] = statistics.total_seconds;
+  json["frames"] = statistics.frame_seconds.size();
+  json["segments"] = statistics.render.segments;
+  json["rays"] = statistics.render.rays;
+  json["stopped_rays"] = statistics.render.stopped_rays;
+  Json& bytes = json["bytes"];
+  bytes["input"] = statistics.input_bytes;
+  bytes["mesh"] = statistics.mesh_bytes;
+  bytes["frame"] = statistics.frame_bytes;
+  bytes["peak_rss"] = peak_resident_memory(RUSAGE_SELF);
+  bytes["reader_peak_rss"] = peak_resident_memory(RUSAGE_CHILDREN);
+  json["threads"] = statistics.render.threads;
+  json["isa"] = statistics.render.instruction_set;
+  json["backend"] = "cpu";
+  json["source"] = name_of(statistics.settings.source);
+  json["integrator"] = name_of(statistics.settings.integrator);
+  json["resolution"] = {statistics.settings.width, statistics.settings.height};
+  json["array"] = statistics.array;
+  Json& prepare = json["prepare"];
+  prepare["input_cells"] = statistics.prepare.input_cells;
+  prepare["tetrahedra"] = statistics.prepare.tetrahedra;
+  prepare["merged_points"] = statistics.prepare.merged_points;
+  prepare["degenerate"] = statistics.prepare.degenerate;
+  prepare["missing_value_cells"] = statistics.prepare.missing_value_cells;
+  prepare["duplicated"] = statistics.prepare.duplicated;
+  prepare["overlapping_faces"] = statistics.prepare.overlapping_faces;
+  prepare["boundary_faces"] = statistics.prepare.boundary_faces;
+  json["version"] = TETRAVOX_VERSION;
+  return dump(json);
+}
+
+std::string format_info_json(const DatasetInfo& info, std::optional<std::size_t> default_array,
+                             const std::optional<MemoryPlan>& memory) {
+  Json json;
+  json["source"] = info.source;
+  json["format"] = info.format;
+  json["points"] = info.point_count;
+  json["cells"] = info.cell_count;
+  json["blocks"] = info.block_count;
+  json["cells_by_type"] = Json::object();
+  for (const auto& [type, count] : info.cells_by_type)
+    json["cells_by_type"][cell_type_name(static_cast<std::uint8_t>(type))] = count;
+  json["left_out"] = {{"lower_dimension", info.left_out.lower_dimension},
+                      {"ghost", info.left_out.ghost},
+                      {"blanked", info.left_out.blanked},
+                      {"unsupported", info.left_out.unsupported}};
+  json["bounds"] = Json::array({range(info.bounds[0]), range(info.bounds[1]), range(info.bounds[2])});
+  json["times"] = info.times;
+  json["time_index"] = info.time_index;
+  json["arrays"] = Json::array();
+  for (const ArrayInfo& array : info.arrays) json["arrays"].push_back(array_json(array));
+  json["default_array"] = default_array ? Json(info.arrays[*default_array].name) : Json();
+  if (memory)
+    json["bytes"] = {{"prepare_peak", memory->prepare},
+                     {"mesh", memory->resident},
+                     {"render", memory->render},
+                     {"available", memory->available}};
+  json["notes"] = info.notes;
+  return dump(json);
+}
+
+}  // namespace tetravox::tool

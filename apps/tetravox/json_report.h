@@ -1,0 +1,47 @@
+#pragma once
+
+/// JSON for programs: the statistics of a picture, the summary of a file.
+
+#include "tetravox/dataset.h"
+#include "tetravox/mesh.h"
+#include "tetravox/render.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tetravox::tool {
+
+/// What `--statistics` writes.
+struct PictureStatistics {
+  double read_seconds = 0, prepare_seconds = 0, transfer_function_seconds = 0, write_seconds = 0, total_seconds = 0;
+  std::vector<double> frame_seconds;  ///< of each frame drawn, at least one
+  RenderStatistics render;            ///< of the last frame
+  PrepareReport prepare;
+  std::uint64_t input_bytes = 0;  ///< points, cells and scalars as read
+  std::uint64_t mesh_bytes = 0;   ///< the prepared mesh
+  std::uint64_t frame_bytes = 0;  ///< camera frame and tables
+  RenderSettings settings;
+  std::string array;
+};
+
+/// Median of the frames after the first, or the first where it is the only one.
+double median_frame_seconds(const PictureStatistics& statistics);
+
+std::string format_statistics(const PictureStatistics& statistics);
+
+/// Memory that rendering needs, for `info`.
+struct MemoryPlan {
+  std::uint64_t prepare = 0;    ///< at the peak of preparing, beside what was read
+  std::uint64_t resident = 0;   ///< the prepared mesh
+  std::uint64_t render = 0;     ///< camera frame, tables and picture at `width` x `height`
+  std::uint64_t available = 0;  ///< that may still be allocated
+  int width = 0, height = 0;
+};
+
+/// `default_array`: index of what is drawn where nobody chooses.
+std::string format_info_json(const DatasetInfo& info, std::optional<std::size_t> default_array,
+                             const std::optional<MemoryPlan>& memory);
+
+}  // namespace tetravox::tool

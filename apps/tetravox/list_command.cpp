@@ -1,0 +1,56 @@
+#include "apps/tetravox/commands.h"
+#include "apps/tetravox/text.h"
+
+#include "tetravox/io.h"
+#include "tetravox/render.h"
+#include "tetravox/transfer_function.h"
+
+#include <cstddef>
+#include <iostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetravox::tool {
+namespace {
+
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+std::string with_title(const std::string& title, const Rows& rows) { return title + "\n" + format_table(rows); }
+
+Rows instruction_set_rows() {
+  Rows rows;
+  for (const std::string& name : instruction_sets()) rows.emplace_back(name, rows.empty() ? "used by default" : "");
+  return rows;
+}
+
+Rows builtin_rows() {
+  Rows rows = builtin_names();
+  for (auto& row : rows) row.first = "builtin:" + row.first;
+  return rows;
+}
+
+}  // namespace
+
+void run_list(const ListOptions& options) {
+  switch (options.topic) {
+    case ListOptions::Topic::kPresets:
+      std::cout << with_title("Presets for --transfer-function, as COLOURS or COLOURS:OPACITY:", preset_names());
+      break;
+    case ListOptions::Topic::kReaders:
+      std::cout << with_title("Files that can be read:", reader_names())
+                << with_title("Pictures that can be written:", image_writer_names());
+      break;
+    case ListOptions::Topic::kBuiltins:
+      std::cout << with_title("Embedded datasets; each takes a size, as in builtin:duct?cells=1000000:",
+                              builtin_rows());
+      break;
+    case ListOptions::Topic::kMethods:
+      std::cout << with_title("Sources (--source):", source_names())
+                << with_title("Integrators (--integrator):", integrator_names())
+                << with_title("Instruction sets (--instruction-set):", instruction_set_rows());
+      break;
+  }
+}
+
+}  // namespace tetravox::tool

@@ -1,0 +1,3 @@
+#include "apps/tetravox/tool.h"
+
+int main(int argc, char** argv) { return tetravox::tool::run_tool(argc, argv); }

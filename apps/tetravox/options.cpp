@@ -1,0 +1,314 @@
+#include "apps/tetravox/options.h"
+
+#include "apps/tetravox/text.h"
+
+#include "tetravox/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tetravox::tool {
+namespace {
+
+constexpr int kLargestThreadCount = 4096;
+constexpr int kLargestRepeat = 1'000'000;
+constexpr int kLargestSampleCount = 4096;
+
+constexpr char kIntroduction[] = "tetravox draws scalar fields on meshes of cells, exactly, without a GPU.";
+
+constexpr char kExamples[] = R"(Examples:
+  tetravox render engine.vtu                        a good picture of any file: engine.png
+  tetravox render builtin:buckyball -o ball.png     an embedded dataset
+  tetravox render engine.vtu -o engine.exr --array pressure --transfer-function viridis:ramp --range -0.5,1
+  tetravox render scene.json --resolution 1920,1080 the scene in a file, larger
+  tetravox render engine.png -o again.png           the scene that a picture holds
+  tetravox info engine.vtu                          cells, arrays, bounds, memory
+  tetravox list presets                             names for --transfer-function
+)";
+
+constexpr char kRenderExamples[] = R"(Examples:
+  tetravox render engine.vtu
+  tetravox render engine.vtu -o engine.png --array velocity --component magnitude
+  tetravox render engine.vtu --transfer-function coolwarm:peaks=5 --range -0.5,1 --camera-azimuth 90
+  tetravox render run.pvd --time 3                  the fourth time step; --time 3.0: the step nearest to time 3
+  tetravox render grid.xyz --solution-file flow.q   PLOT3D
+  tetravox render engine.vtu --save-scene engine.json, then: tetravox render engine.json --resolution 4096,4096
+)";
+
+constexpr char kInputHelp[] =
+    "Mesh file, builtin:NAME, scene (.json), picture with a scene (.png, .exr), or a case's directory";
+
+using Setter = std::function<void(const std::string& option, const std::string& text)>;
+
+/// Adds an option whose text goes through one of our own strict parsers.
+void add(CLI::App& app, const std::string& names, const std::string& type, const std::string& help, Setter set) {
+  const std::string shown = names.substr(names.find("--"));
+  app.add_option_function<std::string>(
+         names, [shown, set = std::move(set)](const std::string& text) { set(shown, text); }, help)
+      ->type_name(type);
+}
+
+/// A setter that stores what `parse` makes of the text.
+template <class T, class Parse>
+Setter store(T& target, Parse parse) {
+  return [&target, parse](const std::string& option, const std::string& text) { target = parse(option, text); };
+}
+
+Setter store_text(std::string& target) {
+  return [&target](const std::string& option, const std::string& text) {
+    if (text.empty()) throw UsageError(option + ": the text is empty");
+    target = text;
+  };
+}
+
+/// A parser of whole numbers in a range.
+auto integer(std::int64_t smallest, std::int64_t largest) {
+  return [=](const std::string& option, const std::string& text) {
+    return static_cast<int>(parse_integer(option, text, smallest, largest));
+  };
+}
+
+/// A parser of names that the library knows; its error becomes a usage error.
+template <class FromName>
+auto named(FromName from_name) {
+  return [=](const std::string& option, const std::string& text) {
+    try {
+      return from_name(text);
+    } catch (const Error& error) {
+      throw UsageError(option + ": " + error.what());
+    }
+  };
+}
+
+bool parse_switch(const std::string& option, const std::string& text) {
+  return parse_choice(option, text, {"on", "off"}) == 0;
+}
+
+void add_input(CLI::App& app, InputOptions& input) {
+  app.add_option("INPUT", input.input, kInputHelp)->type_name("");
+  const std::string group = "Data";
+  app.option_defaults()->group(group);
+  add(app, "--array", "NAME", "Array to draw (default: chosen from the data)", store_text(input.array));
+  add(app, "--association", "point|cell", "Where a point and a cell array share a name",
+      [&input](const std::string& option, const std::string& text) {
+        input.association =
+            parse_choice(option, text, {"point", "cell"}) == 0 ? Association::kPoint : Association::kCell;
+      });
+  add(app, "--component", "N|magnitude", "Component of a vector array (default: magnitude)",
+      store(input.component, parse_component));
+  add(app, "--time", "INDEX|VALUE", "Time step: a whole number is an index, a number with a decimal point is a time",
+      store(input.time, parse_time));
+  add(app, "--solution-file", "FILE", "PLOT3D: the solution (Q) file; INPUT is the grid",
+      store_text(input.solution_file));
+  add(app, "--grid-file", "FILE", "PLOT3D: the grid (XYZ) file; INPUT is the solution", store_text(input.grid_file));
+  add(app, "--reader-timeout", "SECONDS", "Longest time that reading may take (default: 600)",
+      store(input.reader_timeout, parse_positive_number));
+}
+
+void add_function(CLI::App& app, FunctionOptions& function) {
+  app.option_defaults()->group("Transfer function");
+  add(app, "--transfer-function", "FILE|PRESET", "Scene or ParaView JSON file, or a preset (tetravox list presets)",
+      store_text(function.function));
+  add(app, "--preset-name", "NAME", "Which one of a ParaView file with several", store_text(function.preset_name));
+  add(app, "--range", "A,B", "Values at the two ends of the function (default: the data's range)",
+      store(function.range, parse_range));
+  app.add_flag("--log", function.use_logarithm, "Equal steps of the value's logarithm");
+  app.add_flag("--invert", function.invert, "Colours the other way round");
+  add(app, "--unit-distance", "LENGTH", "World length for which opacities hold (default: diagonal / 100)",
+      store(function.unit_distance, parse_positive_number));
+}
+
+void add_camera(CLI::App& app, CameraOptions& camera) {
+  app.option_defaults()->group("Camera");
+  add(app, "--camera-position", "X,Y,Z", "Where the eye is", store(camera.position, parse_vector));
+  add(app, "--camera-focal-point", "X,Y,Z", "What it looks at", store(camera.focal_point, parse_vector));
+  add(app, "--camera-view-up", "X,Y,Z", "What is up in the picture", store(camera.view_up, parse_vector));
+  add(app, "--camera-view-angle", "DEGREES", "Vertical view angle, perspective",
+      store(camera.view_angle, parse_positive_number));
+  add(app, "--camera-parallel-scale", "LENGTH", "Half the height of the picture, orthographic",
+      store(camera.parallel_scale, parse_positive_number));
+  add(app, "--camera-azimuth", "DEGREES", "Turn about the view-up direction", store(camera.azimuth, parse_number));
+  add(app, "--camera-elevation", "DEGREES", "Turn upwards", store(camera.elevation, parse_number));
+  add(app, "--camera-zoom", "FACTOR", "Above 1: closer", store(camera.zoom, parse_positive_number));
+}
+
+void add_picture(CLI::App& app, RenderOptions& options) {
+  app.option_defaults()->group("Picture");
+  add(app, "-o,--output", "FILE", "Picture to write: .png, .exr or .npy (default: INPUT's name with .png, here)",
+      store_text(options.output));
+  add(app, "--resolution", "W,H", "Pixels (default: 512,512)", store(options.resolution, parse_resolution));
+  add(app, "--background", "R,G,B", "Colour behind the data, numbers from 0 to 1 (default: 0,0,0)",
+      store(options.background, parse_color));
+  app.add_flag("--alpha", options.use_alpha, "Keep transparency in a PNG");
+  add(app, "--bit-depth", "8|16", "Bits a channel of a PNG (default: 8)",
+      [&options](const std::string& option, const std::string& text) {
+        options.bit_depth = parse_choice(option, text, {"8", "16"}) == 0 ? 8 : 16;
+      });
+  add(app, "--save-scene", "FILE", "Write everything that the picture depends on as a scene file",
+      store_text(options.save_scene));
+  add(app, "--statistics", "FILE", "Write times, memory and counts as JSON", store_text(options.statistics));
+  app.add_flag("--quiet", options.is_quiet, "Say nothing but errors");
+  app.add_flag("--verbose", options.is_verbose, "Say how long each step takes");
+}
+
+void parse_backend(const std::string& option, const std::string& text) {
+  if (parse_choice(option, text, {"cpu", "gl"}) == 1)
+    throw UsageError(option + ": this version has no OpenGL backend yet: leave the option out, or use cpu");
+}
+
+void add_method(CLI::App& app, RenderOptions& options) {
+  MethodOptions& method = options.method;
+  app.option_defaults()->group("Method");
+  add(app, "--backend", "cpu", "What draws", parse_backend);
+  add(app, "--source", "NAME", "Where segments come from (tetravox list methods)",
+      store(method.source, named(source_from_name)));
+  add(app, "--integrator", "NAME", "What turns a segment into colour (tetravox list methods)",
+      store(method.integrator, named(integrator_from_name)));
+  add(app, "--samples", "N", "Samples a segment of the integrator post",
+      store(method.samples, integer(1, kLargestSampleCount)));
+  add(app, "--tolerance", "ERROR", "Error in colour that a segment may add, in (0, 1]",
+      [&method](const std::string& option, const std::string& text) {
+        method.tolerance = parse_positive_number(option, text);
+        if (*method.tolerance > 1.0) throw UsageError(option + ": '" + text + "' is not a number in (0, 1]");
+      });
+  add(app, "--early-ray-termination", "on|off", "Stop rays when no 8-bit pixel can change any more (default: on)",
+      store(method.use_early_ray_termination, parse_switch));
+  add(app, "--threads", "N", "Threads (default: 0, all cores)", store(method.threads, integer(0, kLargestThreadCount)));
+  add(app, "--instruction-set", "NAME", "Vector instructions (default: the best there is)",
+      [&method](const std::string& option, const std::string& text) {
+        parse_choice(option, text, instruction_sets());
+        method.instruction_set = text;
+      });
+  add(app, "--repeat", "N", "Frames to draw, for timing (default: 1)",
+      store(options.repeat, integer(1, kLargestRepeat)));
+}
+
+ListOptions::Topic topic_from_name(const std::string& text) {
+  return static_cast<ListOptions::Topic>(parse_choice("list", text, {"presets", "readers", "builtins", "methods"}));
+}
+
+/// The tool's parser and what it fills.
+struct Parser {
+  CLI::App app{kIntroduction, "tetravox"};
+  CLI::App* render = nullptr;
+  CLI::App* info = nullptr;
+  CLI::App* list = nullptr;
+  RenderOptions render_options;
+  InfoOptions info_options;
+  std::string topic;
+
+  Parser();
+  CommandLine result();
+  void refuse_unknown(const CLI::App& command) const;
+};
+
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& help) {
+  CLI::App* command = app.add_subcommand(name, help);
+  command->allow_extras();
+  command->set_help_flag("-h,--help", "Print this help and exit")->group("Help");
+  return command;
+}
+
+Parser::Parser() {
+  app.allow_extras();
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.set_version_flag("--version", std::string("tetravox ") + TETRAVOX_VERSION);
+  app.footer(kExamples);
+  app.get_formatter()->column_width(40);
+
+  render = add_command(app, "render", "Draw a picture of a mesh, a scene or a picture's scene");
+  add_input(*render, render_options.input);
+  add_function(*render, render_options.function);
+  add_camera(*render, render_options.camera);
+  add_picture(*render, render_options);
+  add_method(*render, render_options);
+  render->footer(kRenderExamples);
+
+  info = add_command(app, "info", "Tell what a file holds and what drawing it needs");
+  add_input(*info, info_options.input);
+  info->add_flag("--json", info_options.use_json, "Print JSON");
+
+  list = add_command(app, "list", "List presets, readers, builtins or methods");
+  list->add_option("TOPIC", topic, "presets, readers, builtins or methods")->type_name("");
+}
+
+/// The first argument that nothing wanted, with the option that was probably meant.
+void Parser::refuse_unknown(const CLI::App& command) const {
+  const std::vector<std::string> extras = command.remaining();
+  if (extras.empty()) return;
+  const auto dashed =
+      std::find_if(extras.begin(), extras.end(), [](const auto& text) { return text.size() > 1 && text[0] == '-'; });
+  const std::string word = dashed == extras.end() ? extras.front() : dashed->substr(0, dashed->find('='));
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  const bool is_main = &command == &app;
+  if (is_main) known = {"render", "info", "list", "--help", "--version"};
+  const std::string closest = closest_word(word, known);
+  std::string message = (word[0] == '-' ? "unknown option '"
+                         : is_main      ? "unknown command '"
+                                        : "unexpected argument '") +
+                        word + "'";
+  if (!closest.empty())
+    message += ": did you mean " + closest + "?";
+  else if (is_main && word[0] != '-')
+    message += ": to draw a file, tetravox render " + word;
+  throw UsageError(message);
+}
+
+CommandLine Parser::result() {
+  for (const CLI::App* command : {render, info, list})
+    if (command->parsed()) refuse_unknown(*command);
+  refuse_unknown(app);
+  const auto require_input = [](const InputOptions& input) {
+    if (input.input.empty()) throw UsageError("name what to read: a file, a scene, a picture or builtin:NAME");
+    if (!input.grid_file.empty() && !input.solution_file.empty())
+      throw UsageError("give --grid-file or --solution-file, not both: INPUT is the other one");
+  };
+  if (render->parsed()) {
+    require_input(render_options.input);
+    if (render_options.camera.view_angle && render_options.camera.parallel_scale)
+      throw UsageError("give --camera-view-angle (perspective) or --camera-parallel-scale (orthographic), not both");
+    if (render_options.is_quiet && render_options.is_verbose) throw UsageError("give --quiet or --verbose, not both");
+    return render_options;
+  }
+  if (info->parsed()) {
+    require_input(info_options.input);
+    return info_options;
+  }
+  if (list->parsed()) {
+    if (topic.empty()) throw UsageError("list what? presets, readers, builtins or methods");
+    return ListOptions{topic_from_name(topic)};
+  }
+  throw UsageError("name a command: render, info or list");
+}
+
+/// Says where to find help, after the message.
+std::string with_hint(const Parser& parser, const std::string& message) {
+  for (const CLI::App* command : {parser.render, parser.info, parser.list})
+    if (command->parsed()) return message + " (see tetravox " + command->get_name() + " --help)";
+  return message + " (see tetravox --help)";
+}
+
+}  // namespace
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+  Parser parser;
+  try {
+    parser.app.parse(argc, argv);
+    return parser.result();
+  } catch (const CLI::CallForHelp&) {
+    return TextOptions{parser.app.help()};
+  } catch (const CLI::CallForVersion&) {
+    return TextOptions{parser.app.version() + "\n"};
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(with_hint(parser, error.what()));
+  } catch (const UsageError& error) {
+    throw UsageError(with_hint(parser, error.what()));
+  }
+}
+
+}  // namespace tetravox::tool

@@ -1,0 +1,92 @@
+#pragma once
+
+/// The command line as data. Everything left out of it stays open and is chosen by the scene or from the data.
+
+#include "apps/tetravox/option_values.h"
+
+#include "tetravox/scene.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace tetravox::tool {
+
+/// What is read: shared by `render` and `info`.
+struct InputOptions {
+  std::string input;
+  std::string array;
+  std::optional<Association> association;
+  std::optional<int> component;
+  TimeRequest time;
+  std::string grid_file;        ///< PLOT3D: the grid, where `input` is the solution
+  std::string solution_file;    ///< PLOT3D: the solution, where `input` is the grid
+  double reader_timeout = 600;  ///< seconds
+};
+
+struct FunctionOptions {
+  std::string function;     ///< file or preset
+  std::string preset_name;  ///< which one of a file with several
+  std::optional<ValueRange> range;
+  bool use_logarithm = false;
+  bool invert = false;
+  std::optional<double> unit_distance;
+
+  bool changes_values() const { return range || use_logarithm || invert; }
+};
+
+struct CameraOptions {
+  std::optional<Vector3> position, focal_point, view_up;
+  std::optional<double> view_angle, parallel_scale;
+  double azimuth = 0, elevation = 0, zoom = 1;
+};
+
+struct MethodOptions {
+  std::optional<Source> source;
+  std::optional<Integrator> integrator;
+  std::optional<int> samples;
+  std::optional<double> tolerance;
+  std::optional<bool> use_early_ray_termination;
+  int threads = 0;
+  std::string instruction_set;
+};
+
+struct RenderOptions {
+  InputOptions input;
+  FunctionOptions function;
+  CameraOptions camera;
+  MethodOptions method;
+  std::string output;  ///< empty: the input's name with ".png" in the current directory
+  std::optional<std::array<int, 2>> resolution;
+  std::optional<Color> background;
+  bool use_alpha = false;
+  std::optional<int> bit_depth;
+  int repeat = 1;
+  std::string statistics;
+  std::string save_scene;
+  bool is_quiet = false;
+  bool is_verbose = false;
+};
+
+struct InfoOptions {
+  InputOptions input;
+  bool use_json = false;
+};
+
+struct ListOptions {
+  enum class Topic { kPresets, kReaders, kBuiltins, kMethods };
+  Topic topic = Topic::kPresets;
+};
+
+/// Help or version: text to print.
+struct TextOptions {
+  std::string text;
+};
+
+using CommandLine = std::variant<TextOptions, RenderOptions, InfoOptions, ListOptions>;
+
+/// @throws UsageError that names the option and says where to find help.
+CommandLine parse_command_line(int argc, const char* const* argv);
+
+}  // namespace tetravox::tool

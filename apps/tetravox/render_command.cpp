@@ -1,0 +1,244 @@
+#include "apps/tetravox/commands.h"
+#include "apps/tetravox/empty_picture.h"
+#include "apps/tetravox/function_choice.h"
+#include "apps/tetravox/json_report.h"
+#include "apps/tetravox/memory_plan.h"
+#include "apps/tetravox/progress_line.h"
+#include "apps/tetravox/scene_input.h"
+#include "apps/tetravox/text.h"
+
+#include "tetravox/error.h"
+#include "tetravox/io.h"
+#include "tetravox/render.h"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <utility>
+
+namespace tetravox::tool {
+namespace {
+
+/// Seconds since it was made, or since the last lap.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = Clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+  double total() const { return std::chrono::duration<double>(Clock::now() - first_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point first_ = Clock::now();
+  Clock::time_point last_ = first_;
+};
+
+/// Messages between the progress lines.
+struct Talk {
+  explicit Talk(const RenderOptions& options)
+      : is_quiet(options.is_quiet), is_verbose(options.is_verbose), line(!options.is_quiet) {}
+
+  void warn(const std::string& text) { say(text, !is_quiet); }
+  void detail(const std::string& text) { say(text, is_verbose); }
+  void say(const std::string& text, bool is_wanted) {
+    line.clear();
+    if (is_wanted) std::fprintf(stderr, "tetravox: %s\n", single_line(text).c_str());
+  }
+
+  bool is_quiet, is_verbose;
+  ProgressLine line;
+};
+
+/// Everything that one run makes on its way to the picture.
+struct Job {
+  SceneInput input;
+  std::string output;
+  WriteOptions write;
+  DatasetInfo info;
+  PreparedMesh mesh;
+  CompletedScene completed;
+  PictureStatistics statistics;
+};
+
+/// Name of the picture, and that it can be written as asked, before any long work.
+std::string choose_output(const RenderOptions& options, const SceneInput& input) {
+  const std::string output = options.output.empty() ? input.name + ".png" : options.output;
+  const std::string ending = ending_of(output);
+  const bool is_known = ending == ".png" || ending == ".exr" || ending == ".npy";
+  if (!is_known) throw UsageError("--output: '" + output + "' does not end in .png, .exr or .npy");
+  if (ending != ".png" && (options.use_alpha || options.bit_depth))
+    throw UsageError("--alpha and --bit-depth are for .png; " + ending + " keeps floats with alpha");
+  std::error_code ignored;
+  if (options.output.empty() && std::filesystem::equivalent(output, options.input.input, ignored))
+    throw UsageError("--output: name the picture, the default would replace the input " + output);
+  return output;
+}
+
+/// Puts the command line's picture and method options over those of the scene.
+void override_scene(const RenderOptions& options, Scene& scene) {
+  RenderSettings& settings = scene.settings;
+  if (options.resolution) {
+    settings.width = (*options.resolution)[0];
+    settings.height = (*options.resolution)[1];
+  }
+  scene.background = options.background.value_or(scene.background);
+  const MethodOptions& method = options.method;
+  settings.source = method.source.value_or(settings.source);
+  settings.integrator = method.integrator.value_or(settings.integrator);
+  settings.samples = method.samples.value_or(settings.samples);
+  settings.tolerance = method.tolerance.value_or(settings.tolerance);
+  settings.use_early_ray_termination = method.use_early_ray_termination.value_or(settings.use_early_ray_termination);
+  settings.threads = method.threads;
+  settings.instruction_set = method.instruction_set;
+}
+
+Camera override_camera(const CameraOptions& options, Camera camera) {
+  camera.position = options.position.value_or(camera.position);
+  camera.focal_point = options.focal_point.value_or(camera.focal_point);
+  camera.view_up = options.view_up.value_or(camera.view_up);
+  if (options.view_angle) {
+    camera.view_angle = *options.view_angle;
+    camera.parallel_scale.reset();
+  }
+  if (options.parallel_scale) camera.parallel_scale = options.parallel_scale;
+  validate_camera(camera);
+  if (options.azimuth != 0.0 || options.elevation != 0.0)
+    camera = rotate_camera(camera, options.azimuth, options.elevation);
+  if (options.zoom != 1.0) camera = zoom_camera(camera, options.zoom);
+  validate_camera(camera);
+  return camera;
+}
+
+/// What was chosen from the data, written down so that the same picture can be drawn again.
+void record_data(const Dataset& dataset, SceneData& data) {
+  data.array.name = dataset.mesh.array_name;
+  data.array.association = dataset.mesh.association;
+  data.array.component.reset();
+  for (const ArrayInfo& array : dataset.info.arrays)
+    if (array.name == data.array.name && array.association == dataset.mesh.association && array.components > 1)
+      data.array.component = dataset.mesh.component;
+  if (!data.time.index && !data.time.value && dataset.info.times.size() > 1) data.time.index = dataset.info.time_index;
+}
+
+/// Reads and prepares; the data as read is gone afterwards.
+void load_mesh(Job& job, Talk& talk) {
+  Stopwatch watch;
+  Dataset dataset = read_dataset(job.input.data_path, job.input.read, talk.line.progress());
+  throw_if_interrupted();
+  job.statistics.read_seconds = watch.lap();
+  talk.detail("read " + format_count(dataset.info.cell_count) + " cells in " +
+              format_seconds(job.statistics.read_seconds));
+  require_memory(plan_memory(dataset.mesh, job.input.scene.settings), job.input.data_path);
+  job.statistics.input_bytes = input_bytes(dataset.mesh);
+
+  job.mesh = prepare_mesh(dataset.mesh, talk.line.progress());
+  throw_if_interrupted();
+  job.statistics.prepare_seconds = watch.lap();
+  job.statistics.prepare = job.mesh.report;
+  job.statistics.mesh_bytes = prepared_bytes(job.mesh);
+  talk.detail("prepared " + format_count(job.mesh.cells.size()) + " tetrahedra in " +
+              format_seconds(job.statistics.prepare_seconds) + ", " + format_bytes(job.statistics.mesh_bytes));
+  record_data(dataset, job.input.scene.data);
+  job.statistics.array = dataset.mesh.array_name;
+  job.info = std::move(dataset.info);
+}
+
+/// Function and camera, from the options, the scene or the data.
+void complete_job(const RenderOptions& options, Job& job) {
+  Scene& scene = job.input.scene;
+  choose_function(options.function, job.mesh, scene);
+  job.completed = complete_scene(scene, job.mesh);
+  job.completed.camera = override_camera(options.camera, job.completed.camera);
+  scene.transfer_function = job.completed.transfer_function;
+  scene.camera = job.completed.camera;
+}
+
+Image draw(const RenderOptions& options, Job& job, Talk& talk) {
+  Renderer renderer(job.mesh);
+  Stopwatch watch;
+  renderer.set_transfer_function(job.completed.optical_function);
+  job.statistics.transfer_function_seconds = watch.lap();
+  const RenderSettings& settings = job.input.scene.settings;
+  Image image;
+  for (int i = 0; i < options.repeat; ++i) {
+    throw_if_interrupted();
+    image = {};  // the frame before is not needed any more
+    watch.lap();
+    image = renderer.render(job.completed.camera, settings, &job.statistics.render, talk.line.progress());
+    job.statistics.frame_seconds.push_back(watch.lap());
+  }
+  job.statistics.frame_bytes = renderer.bytes();
+  job.statistics.settings = settings;
+  talk.detail("drew " + format_count(job.statistics.render.segments) + " segments in " +
+              format_seconds(median_frame_seconds(job.statistics)) + " a frame, " +
+              job.statistics.render.instruction_set + ", " + std::to_string(job.statistics.render.threads) +
+              " threads");
+  return image;
+}
+
+/// The scene's text for a file at `target`.
+std::string scene_text(const Job& job, const std::string& target) {
+  Scene scene = job.input.scene;
+  scene.data = data_seen_from(job.input, target);
+  return format_scene(scene);
+}
+
+WriteOptions choose_write_options(const RenderOptions& options, const Job& job) {
+  WriteOptions write;
+  // A picture drawn again is written as it was, unless something else is asked for.
+  if (job.input.picture && ending_of(job.output) == ".png") {
+    write.bit_depth = job.input.picture->bit_depth;
+    write.use_alpha = job.input.picture->use_alpha && !options.background;
+  }
+  write.background = job.input.scene.background;
+  write.use_alpha = write.use_alpha || options.use_alpha;
+  write.bit_depth = options.bit_depth.value_or(write.bit_depth);
+  write.scene = scene_text(job, job.output);
+  return write;
+}
+
+std::string describe_array(const Job& job) {
+  const ArrayRequest& array = job.input.scene.data.array;
+  std::string text = array.name;
+  if (array.component)
+    text += *array.component == kMagnitude ? " magnitude" : " component " + std::to_string(*array.component);
+  text += array.association == Association::kCell ? " (cell) " : " (point) ";
+  return text + format_range(job.mesh.scalar_range);
+}
+
+void write_everything(const RenderOptions& options, Job& job, const Image& image, Talk& talk, Stopwatch& watch) {
+  Stopwatch write_watch;
+  write_image(job.output, image, choose_write_options(options, job), talk.line.progress());
+  job.statistics.write_seconds = write_watch.lap();
+  if (!options.save_scene.empty()) write_text_file(options.save_scene, scene_text(job, options.save_scene));
+  job.statistics.total_seconds = watch.total();
+  if (!options.statistics.empty()) write_text_file(options.statistics, format_statistics(job.statistics));
+}
+
+}  // namespace
+
+void run_render(const RenderOptions& options) {
+  Stopwatch watch;
+  Talk talk(options);
+  Job job;
+  job.input = load_scene_input(options.input);
+  job.output = choose_output(options, job.input);
+  override_scene(options, job.input.scene);
+  load_mesh(job, talk);
+  complete_job(options, job);
+  const Image image = draw(options, job, talk);
+  throw_if_interrupted();
+
+  for (const std::string& note : job.info.notes) talk.detail(note);
+  const PictureContext context{job.input.scene, job.completed, job.mesh, job.info, job.statistics.render};
+  for (const std::string& line : explain_picture(image, context)) talk.warn("warning: " + line);
+  write_everything(options, job, image, talk, watch);
+  talk.line.clear();
+  if (options.is_quiet) return;
+  std::cout << "wrote " << single_line(job.output) << ": " << image.width << " x " << image.height << ", "
+            << format_seconds(watch.total()) << ", " << single_line(describe_array(job)) << "\n";
+}
+
+}  // namespace tetravox::tool

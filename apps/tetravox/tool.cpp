@@ -1,0 +1,52 @@
+#include "apps/tetravox/tool.h"
+
+#include "apps/tetravox/commands.h"
+#include "apps/tetravox/interrupt.h"
+#include "apps/tetravox/options.h"
+#include "apps/tetravox/text.h"
+
+#include "tetravox/error.h"
+
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <variant>
+
+namespace tetravox::tool {
+namespace {
+
+int report_error(const std::string& message, int code) {
+  std::fprintf(stderr, "tetravox: %s\n", single_line(message).c_str());
+  return code;
+}
+
+int run_command(const CommandLine& command_line) {
+  if (const auto* text = std::get_if<TextOptions>(&command_line)) std::cout << text->text;
+  if (const auto* options = std::get_if<RenderOptions>(&command_line)) run_render(*options);
+  if (const auto* options = std::get_if<InfoOptions>(&command_line)) run_info(*options);
+  if (const auto* options = std::get_if<ListOptions>(&command_line)) run_list(*options);
+  if (!std::cout.flush()) throw Error(ErrorCode::kCannotWrite, "cannot write to standard output");
+  return kDone;
+}
+
+}  // namespace
+
+int run_tool(int argc, char** argv) {
+  install_interrupt_handlers();
+  try {
+    return run_command(parse_command_line(argc, argv));
+  } catch (const UsageError& error) {
+    return report_error(error.what(), kUsage);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kCancelled && interrupt_signal() != 0)
+      return report_error("interrupted; nothing was written", 128 + interrupt_signal());
+    return report_error(error.what(), kFailed);
+  } catch (const std::bad_alloc&) {
+    return report_error("not enough memory: use a smaller --resolution or mesh, or a larger machine", kFailed);
+  } catch (const std::exception& error) {
+    return report_error(std::string("internal error: ") + error.what() + "; please report this", kFailed);
+  }
+}
+
+}  // namespace tetravox::tool
