@@ -66,7 +66,10 @@ Color rgb_from_lab(const Color& lab) {
   const Color rgb{3.2406 * xyz[0] - 1.5372 * xyz[1] - 0.4986 * xyz[2],
                   -0.9689 * xyz[0] + 1.8758 * xyz[1] + 0.0415 * xyz[2],
                   0.0557 * xyz[0] - 0.2040 * xyz[1] + 1.0570 * xyz[2]};
-  return {display_from_linear(rgb[0]), display_from_linear(rgb[1]), display_from_linear(rgb[2])};
+  // Bring colours out of gamut back by dimming all channels alike, as VTK does.
+  const Color display{display_from_linear(rgb[0]), display_from_linear(rgb[1]), display_from_linear(rgb[2])};
+  const double largest = std::max({1.0, display[0], display[1], display[2]});
+  return {display[0] / largest, display[1] / largest, display[2] / largest};
 }
 
 /// Polar L*a*b*: magnitude, saturation angle, hue angle.

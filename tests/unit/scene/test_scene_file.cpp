@@ -1,0 +1,255 @@
+#include "tests/unit/optics/expect_error.h"
+#include "tetravox/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+namespace tetravox {
+namespace {
+
+using testing::expect_error;
+
+const std::string kHead = R"({"tetravox":1,"data":{"file":"a.vtu"})";
+
+Scene parse(const std::string& text) { return parse_scene(text, "scene.json"); }
+
+void expect_bad(const std::string& text, const char* where, const char* what) {
+  expect_error(
+      ErrorCode::kBadFile, [&] { parse(text); }, "scene.json", where, what);
+}
+
+void expect_same(const Scene& a, const Scene& b) {
+  EXPECT_EQ(a.data.file, b.data.file);
+  EXPECT_EQ(a.data.solution_file, b.data.solution_file);
+  EXPECT_EQ(a.data.array.name, b.data.array.name);
+  EXPECT_EQ(a.data.array.association, b.data.array.association);
+  EXPECT_EQ(a.data.array.component, b.data.array.component);
+  EXPECT_EQ(a.data.time.index, b.data.time.index);
+  EXPECT_EQ(a.data.time.value, b.data.time.value);
+  ASSERT_EQ(a.transfer_function.has_value(), b.transfer_function.has_value());
+  if (a.transfer_function) {
+    EXPECT_EQ(a.transfer_function->absorption, b.transfer_function->absorption);
+    EXPECT_EQ(a.transfer_function->unit_distance, b.transfer_function->unit_distance);
+    ASSERT_EQ(a.transfer_function->points.size(), b.transfer_function->points.size());
+    for (std::size_t i = 0; i < a.transfer_function->points.size(); ++i) {
+      EXPECT_EQ(a.transfer_function->points[i].value, b.transfer_function->points[i].value);
+      EXPECT_EQ(a.transfer_function->points[i].color, b.transfer_function->points[i].color);
+      EXPECT_EQ(a.transfer_function->points[i].absorption, b.transfer_function->points[i].absorption);
+    }
+  }
+  ASSERT_EQ(a.camera.has_value(), b.camera.has_value());
+  if (a.camera) {
+    EXPECT_EQ(a.camera->position, b.camera->position);
+    EXPECT_EQ(a.camera->focal_point, b.camera->focal_point);
+    EXPECT_EQ(a.camera->view_up, b.camera->view_up);
+    EXPECT_EQ(a.camera->parallel_scale, b.camera->parallel_scale);
+    if (!a.camera->parallel_scale) {
+      EXPECT_EQ(a.camera->view_angle, b.camera->view_angle);
+    }
+  }
+  EXPECT_EQ(a.background, b.background);
+  EXPECT_EQ(a.settings.width, b.settings.width);
+  EXPECT_EQ(a.settings.height, b.settings.height);
+  EXPECT_EQ(a.settings.source, b.settings.source);
+  EXPECT_EQ(a.settings.integrator, b.settings.integrator);
+  EXPECT_EQ(a.settings.tolerance, b.settings.tolerance);
+  EXPECT_EQ(a.settings.samples, b.settings.samples);
+  EXPECT_EQ(a.settings.use_early_ray_termination, b.settings.use_early_ray_termination);
+}
+
+Scene random_scene(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0.0, 1.0), exponent(-300.0, 300.0);
+  const auto number = [&] { return (unit(random) - 0.5) * std::pow(10.0, exponent(random)); };
+  Scene scene;
+  scene.data.file = "dir \"x\"/\xC3\xA9\t.vtu";
+  if (unit(random) < 0.3) scene.data.solution_file = "q.bin";
+  if (unit(random) < 0.7) scene.data.array.name = "Density \\ (kg)";
+  if (unit(random) < 0.7) scene.data.array.association = unit(random) < 0.5 ? Association::kPoint : Association::kCell;
+  if (unit(random) < 0.7) scene.data.array.component = static_cast<int>(unit(random) * 4) - 1;
+  if (unit(random) < 0.5)
+    scene.data.time.index = static_cast<std::size_t>(unit(random) * 1e9);
+  else
+    scene.data.time.value = number();
+  if (unit(random) < 0.8) {
+    TransferFunction function;
+    function.absorption = unit(random) < 0.5 ? Absorption::kOpacity : Absorption::kExtinction;
+    if (unit(random) < 0.5) function.unit_distance = std::abs(number()) + 1e-300;
+    double value = number();
+    for (int i = 0; i < 20; ++i) {
+      const double next = value + std::abs(number());
+      if (std::isfinite(next)) value = next;
+      function.points.push_back({value, {unit(random), unit(random), unit(random)}, unit(random)});
+    }
+    scene.transfer_function = function;
+  }
+  if (unit(random) < 0.8) {
+    Camera camera;
+    camera.position = {unit(random), -unit(random), 1.0 / 3};
+    camera.focal_point = {unit(random) * 1e-5, 7.0, unit(random)};
+    camera.view_up = {unit(random), unit(random), 3.0};
+    camera.view_angle = 1.0 + 170.0 * unit(random);
+    if (unit(random) < 0.5) camera.parallel_scale = std::abs(number()) + 1e-300;
+    scene.camera = camera;
+  }
+  scene.background = {unit(random), unit(random), unit(random)};
+  scene.settings.width = 1 + static_cast<int>(unit(random) * 16383);
+  scene.settings.height = 1 + static_cast<int>(unit(random) * 16383);
+  scene.settings.integrator = unit(random) < 0.5 ? Integrator::kPartial : Integrator::kPost;
+  scene.settings.tolerance = 1e-6 + 0.9 * unit(random);
+  scene.settings.samples = 1 + static_cast<int>(unit(random) * 4095);
+  scene.settings.use_early_ray_termination = unit(random) < 0.5;
+  return scene;
+}
+
+TEST(SceneFile, RoundTripsExactly) {
+  std::mt19937 random(11);
+  for (int round = 0; round < 300; ++round) {
+    const Scene scene = random_scene(random);
+    const std::string text = format_scene(scene);
+    const Scene again = parse(text);
+    expect_same(scene, again);
+    EXPECT_EQ(text, format_scene(again));
+  }
+}
+
+TEST(SceneFile, ReadsTheLeastThereCanBe) {
+  const Scene scene = parse(kHead + "}");
+  EXPECT_EQ(scene.data.file, "a.vtu");
+  EXPECT_FALSE(scene.transfer_function);
+  EXPECT_FALSE(scene.camera);
+  EXPECT_EQ(scene.settings.width, 512);
+}
+
+TEST(SceneFile, ReadsEverything) {
+  const Scene scene = parse(R"({"tetravox":1,
+    "data":{"file":"builtin:duct","solution_file":"q","array":"V","association":"cell","component":"magnitude","time":{"index":3}},
+    "transfer_function":{"points":[{"value":0,"color":[0,0,0],"opacity":0.5}],"unit_distance":2},
+    "camera":{"position":[0,0,5],"focal_point":[0,0,0],"view_up":[0,1,0],"parallel_scale":3},
+    "image":{"resolution":[300,200],"background":[0.1,0.2,0.3]},
+    "render":{"source":"walk","integrator":"partial","tolerance":0.001,"samples":5,"early_ray_termination":false}})");
+  EXPECT_EQ(scene.data.array.association, Association::kCell);
+  EXPECT_EQ(scene.data.array.component, kMagnitude);
+  EXPECT_EQ(scene.data.time.index, 3u);
+  EXPECT_EQ(scene.transfer_function->unit_distance, 2.0);
+  EXPECT_EQ(scene.camera->parallel_scale, 3.0);
+  EXPECT_EQ(scene.settings.width, 300);
+  EXPECT_EQ(scene.settings.height, 200);
+  EXPECT_EQ(scene.background, (Color{0.1, 0.2, 0.3}));
+  EXPECT_EQ(scene.settings.integrator, Integrator::kPartial);
+  EXPECT_EQ(scene.settings.samples, 5);
+  EXPECT_FALSE(scene.settings.use_early_ray_termination);
+}
+
+TEST(SceneFile, ReadsTheScenesOfTheExactImages) {
+  const std::filesystem::path directory = std::filesystem::path(TETRAVOX_SHARED_DIR) / "truth";
+  if (!std::filesystem::is_directory(directory)) GTEST_SKIP() << "no exact images at " << directory;
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    if (entry.path().extension() != ".json") continue;
+    std::stringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    const Scene scene = parse_scene(text.str(), entry.path().string());
+    EXPECT_TRUE(scene.transfer_function && scene.camera) << entry.path();
+    expect_same(scene, parse(format_scene(scene)));
+    ++count;
+  }
+  EXPECT_GT(count, 0);
+}
+
+TEST(SceneFile, NamesUnknownKeysAndTheNearestKnownOne) {
+  expect_bad(kHead + R"(,"camra":{}})", "'camra'", "did you mean 'camera'");
+  expect_bad(kHead + R"(,"zzzzzz":{}})", "'zzzzzz'", "transfer_function");
+  expect_bad(R"({"tetravox":1,"data":{"file":"a","aray":"b"}})", "data", "did you mean 'array'");
+  expect_bad(kHead + R"(,"image":{"resolutoin":[1,1]}})", "image", "did you mean 'resolution'");
+  expect_bad(kHead + R"(,"render":{"threads":3}})", "render", "'threads'");
+  expect_bad(kHead + R"(,"camera":{"position":[0,0,1],"focal_point":[0,0,0],"viewup":[0,1,0]}})", "camera",
+             "did you mean 'view_up'");
+}
+
+TEST(SceneFile, RefusesOtherVersions) {
+  expect_bad(R"({"data":{"file":"a"}})", "'tetravox'", "missing");
+  expect_bad(R"({"tetravox":2,"data":{"file":"a"}})", "version 1", "not 2");
+  expect_bad(R"({"tetravox":"1","data":{"file":"a"}})", "version 1", "not");
+  expect_bad(R"({"tetravox":1.0,"data":{"file":"a"}})", "version 1", "not");
+}
+
+TEST(SceneFile, SaysWhatIsWrongAndWhere) {
+  expect_bad(R"({"tetravox":1})", "'data'", "missing");
+  expect_bad(R"({"tetravox":1,"data":{}})", "data", "'file'");
+  expect_bad(R"({"tetravox":1,"data":{"file":""}})", "data.file", "file name");
+  expect_bad(R"({"tetravox":1,"data":{"file":"a\u0000b"}})", "data.file", "file name");
+  expect_bad(R"({"tetravox":1,"data":{"file":3}})", "data.file", "a string");
+  expect_bad(R"({"tetravox":1,"data":[]})", "data", "an object");
+  expect_bad(R"({"tetravox":1,"data":{"file":"a","association":"both"}})", "data.association", "\"cell\"");
+  expect_bad(R"({"tetravox":1,"data":{"file":"a","component":-1}})", "data.component", "whole number");
+  expect_bad(R"({"tetravox":1,"data":{"file":"a","component":"x"}})", "data.component", "magnitude");
+  expect_bad(R"({"tetravox":1,"data":{"file":"a","time":{}}})", "data.time", "either");
+  expect_bad(R"({"tetravox":1,"data":{"file":"a","time":{"index":1,"value":2}}})", "data.time", "either");
+  expect_bad(R"({"tetravox":1,"data":{"file":"a","time":{"index":1.5}}})", "data.time.index", "whole number");
+  expect_bad(R"({"tetravox":1,"data":{"file":"a","time":{"index":18446744073709551615}}})", "data.time.index",
+             "whole number");
+  expect_bad(kHead + R"(,"image":{"resolution":[0,5]}})", "image.resolution[0]", "16384");
+  expect_bad(kHead + R"(,"image":{"resolution":[5,16385]}})", "image.resolution[1]", "16384");
+  expect_bad(kHead + R"(,"image":{"resolution":[5]}})", "image.resolution", "two numbers");
+  expect_bad(kHead + R"(,"image":{"background":[0,0,2]}})", "image.background", "[0, 1]");
+  expect_bad(kHead + R"(,"camera":{"focal_point":[0,0,0]}})", "camera", "'position'");
+  expect_bad(kHead + R"(,"camera":{"position":[0,0,0],"focal_point":[0,0,0]}})", "camera", "the same");
+  expect_bad(kHead + R"(,"camera":{"position":[0,0,1],"focal_point":[0,0,0],"view_angle":30,"parallel_scale":1}})",
+             "camera", "not both");
+  expect_bad(kHead + R"(,"camera":{"position":[0,0,1],"focal_point":[0,0,0],"view_angle":190}})", "camera",
+             "view_angle");
+  expect_bad(kHead + R"(,"render":{"integrator":"magic"}})", "render.integrator", "antiderivative");
+  expect_bad(kHead + R"(,"render":{"source":"magic"}})", "render.source", "walk");
+  expect_bad(kHead + R"(,"render":{"tolerance":0}})", "render.tolerance", "(0, 1]");
+  expect_bad(kHead + R"(,"render":{"samples":5000}})", "render.samples", "4096");
+  expect_bad(kHead + R"(,"render":{"early_ray_termination":1}})", "render.early_ray_termination", "true or false");
+  expect_bad(kHead + R"(,"transfer_function":{"points":[{"value":0,"color":[0,0,0]}]}})", "transfer_function.points[0]",
+             "either");
+}
+
+TEST(SceneFile, SurvivesHostileText) {
+  expect_bad("", "not JSON", "");
+  expect_bad("[]", "an object", "");
+  expect_bad("null", "an object", "");
+  expect_bad(kHead + ",}", "not JSON", "");
+  expect_bad(kHead + R"(,"data":{"file":"b"}})", "'data'", "twice");
+  expect_bad("/* comment */" + kHead + "}", "not JSON", "");
+  expect_bad(kHead + R"(,"camera":{"position":[0,0,1e999],"focal_point":[0,0,0]}})", "not JSON", "1e999");
+  expect_bad(std::string(1'000'000, '{'), "not JSON", "");
+  expect_bad(kHead + R"(,"image":)" + std::string(100'000, '['), "deeper", "");
+  const std::string whole = format_scene(parse(kHead + R"(,"render":{"samples":5}})"));
+  for (std::size_t length = 0; length + 2 < whole.size(); ++length)
+    EXPECT_THROW(parse(whole.substr(0, length)), Error) << length;
+}
+
+TEST(SceneFile, BitFlipsEndInASceneOrAnError) {
+  const std::string whole = format_scene(parse(kHead + R"(,"image":{"resolution":[300,200]}})"));
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string text = whole;
+      text[i] = static_cast<char>(text[i] ^ (1 << bit));
+      try {
+        parse(text);
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::kBadFile);
+      }
+    }
+}
+
+TEST(RenderNames, GoThereAndBack) {
+  for (const auto& [name, description] : integrator_names()) {
+    EXPECT_EQ(name_of(integrator_from_name(name)), name);
+    EXPECT_FALSE(description.empty());
+  }
+  for (const auto& [name, description] : source_names()) EXPECT_EQ(name_of(source_from_name(name)), name);
+  expect_error(
+      ErrorCode::kInvalidArgument, [] { integrator_from_name("magic"); }, "magic", "antiderivative, partial, post");
+}
+
+}  // namespace
+}  // namespace tetravox
