@@ -9,9 +9,9 @@
 #include "tetravox/io.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <iostream>
 #include <optional>
-#include <utility>
 
 namespace tetravox::tool {
 namespace {
@@ -20,13 +20,21 @@ std::string row(const std::string& name, const std::string& text) {
   return "  " + name + std::string(10 - name.size(), ' ') + text + "\n";
 }
 
+/// "3 tetrahedra", "1 wedge".
+std::string typed_count(CellType type, std::uint64_t count) {
+  std::string name = cell_type_name(static_cast<std::uint8_t>(type));
+  if (count != 1 && name.ends_with("hedron"))
+    name.replace(name.size() - 2, 2, "a");
+  else if (count != 1)
+    name += "s";
+  return format_count(count) + " " + name;
+}
+
 std::string cells_text(const DatasetInfo& info) {
-  std::string text = format_count(info.cell_count);
-  if (info.block_count > 1) text += " in " + format_count(info.block_count) + " blocks";
-  std::string separator = ": ";
-  for (const auto& [type, count] : info.cells_by_type)
-    text +=
-        std::exchange(separator, ", ") + format_count(count) + " " + cell_type_name(static_cast<std::uint8_t>(type));
+  std::string text;
+  for (const auto& [type, count] : info.cells_by_type) text += (text.empty() ? "" : ", ") + typed_count(type, count);
+  if (info.cells_by_type.size() != 1) text = format_count(info.cell_count) + (text.empty() ? "" : ": ") + text;
+  if (info.block_count > 1) text += "; " + format_count(info.block_count) + " blocks";
   return text;
 }
 

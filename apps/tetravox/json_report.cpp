@@ -55,6 +55,7 @@ std::string format_statistics(const PictureStatistics& statistics) {
   Json& seconds = json["seconds"];
   seconds["read"] = statistics.read_seconds;
   seconds["prepare"] = statistics.prepare_seconds;
+  seconds["choose"] = statistics.choose_seconds;
   seconds["transfer_function"] = statistics.transfer_function_seconds;
   seconds["first_frame"] = statistics.frame_seconds.empty() ? 0.0 : statistics.frame_seconds.front();
   seconds["frame"] = median_frame_seconds(statistics);

@@ -15,9 +15,11 @@ namespace tetravox::tool {
 
 /// What `--statistics` writes.
 struct PictureStatistics {
-  double read_seconds = 0, prepare_seconds = 0, transfer_function_seconds = 0, write_seconds = 0, total_seconds = 0;
-  std::vector<double> frame_seconds;  ///< of each frame drawn, at least one
-  RenderStatistics render;            ///< of the last frame
+  double read_seconds = 0, prepare_seconds = 0, write_seconds = 0, total_seconds = 0;
+  double choose_seconds = 0;             ///< function and camera, from the data where nobody says
+  double transfer_function_seconds = 0;  ///< from the function to tables, at each change
+  std::vector<double> frame_seconds;     ///< of each frame drawn, at least one
+  RenderStatistics render;               ///< of the last frame
   PrepareReport prepare;
   std::uint64_t input_bytes = 0;  ///< points, cells and scalars as read
   std::uint64_t mesh_bytes = 0;   ///< the prepared mesh

@@ -6,7 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -190,6 +192,24 @@ ListOptions::Topic topic_from_name(const std::string& text) {
   return static_cast<ListOptions::Topic>(parse_choice("list", text, {"presets", "readers", "builtins", "methods"}));
 }
 
+/// Usage lines in the order in which people type.
+class HelpFormatter final : public CLI::Formatter {
+ public:
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    const bool is_main = app->get_parent() == nullptr;
+    const std::string path = is_main ? name : "tetravox " + app->get_name();
+    const std::string argument = is_main ? "COMMAND" : app->get_name() == "list" ? "TOPIC" : "INPUT";
+    return "Usage: " + path + " " + argument + " [OPTIONS]\n";
+  }
+};
+
+/// The help text without runs of empty lines.
+std::string make_help(const CLI::App& app) {
+  std::string text = app.help();
+  for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n", at)) text.erase(at, 1);
+  return text;
+}
+
 /// The tool's parser and what it fills.
 struct Parser {
   CLI::App app{kIntroduction, "tetravox"};
@@ -208,7 +228,7 @@ struct Parser {
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& help) {
   CLI::App* command = app.add_subcommand(name, help);
   command->allow_extras();
-  command->set_help_flag("-h,--help", "Print this help and exit")->group("Help");
+  command->set_help_flag("-h,--help", "Print this help and exit");
   return command;
 }
 
@@ -217,7 +237,9 @@ Parser::Parser() {
   app.set_help_flag("-h,--help", "Print this help and exit");
   app.set_version_flag("--version", std::string("tetravox ") + TETRAVOX_VERSION);
   app.footer(kExamples);
-  app.get_formatter()->column_width(40);
+  const auto formatter = std::make_shared<HelpFormatter>();
+  formatter->column_width(40);
+  app.formatter(formatter);
 
   render = add_command(app, "render", "Draw a picture of a mesh, a scene or a picture's scene");
   add_input(*render, render_options.input);
@@ -286,13 +308,6 @@ CommandLine Parser::result() {
   throw UsageError("name a command: render, info or list");
 }
 
-/// Says where to find help, after the message.
-std::string with_hint(const Parser& parser, const std::string& message) {
-  for (const CLI::App* command : {parser.render, parser.info, parser.list})
-    if (command->parsed()) return message + " (see tetravox " + command->get_name() + " --help)";
-  return message + " (see tetravox --help)";
-}
-
 }  // namespace
 
 CommandLine parse_command_line(int argc, const char* const* argv) {
@@ -301,13 +316,11 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     parser.app.parse(argc, argv);
     return parser.result();
   } catch (const CLI::CallForHelp&) {
-    return TextOptions{parser.app.help()};
+    return TextOptions{make_help(parser.app)};
   } catch (const CLI::CallForVersion&) {
     return TextOptions{parser.app.version() + "\n"};
   } catch (const CLI::ParseError& error) {
-    throw UsageError(with_hint(parser, error.what()));
-  } catch (const UsageError& error) {
-    throw UsageError(with_hint(parser, error.what()));
+    throw UsageError(error.what());
   }
 }
 

@@ -86,7 +86,7 @@ struct TextOptions {
 
 using CommandLine = std::variant<TextOptions, RenderOptions, InfoOptions, ListOptions>;
 
-/// @throws UsageError that names the option and says where to find help.
+/// @throws UsageError that names the option.
 CommandLine parse_command_line(int argc, const char* const* argv);
 
 }  // namespace tetravox::tool

@@ -147,12 +147,14 @@ void load_mesh(Job& job, Talk& talk) {
 
 /// Function and camera, from the options, the scene or the data.
 void complete_job(const RenderOptions& options, Job& job) {
+  Stopwatch watch;
   Scene& scene = job.input.scene;
   choose_function(options.function, job.mesh, scene);
   job.completed = complete_scene(scene, job.mesh);
   job.completed.camera = override_camera(options.camera, job.completed.camera);
   scene.transfer_function = job.completed.transfer_function;
   scene.camera = job.completed.camera;
+  job.statistics.choose_seconds = watch.lap();
 }
 
 Image draw(const RenderOptions& options, Job& job, Talk& talk) {

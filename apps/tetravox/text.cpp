@@ -58,7 +58,8 @@ std::string format_table(const std::vector<std::pair<std::string, std::string>>&
   for (const auto& row : rows) width = std::max(width, row.first.size());
   std::string text;
   for (const auto& row : rows)
-    text += "  " + row.first + std::string(width - row.first.size() + 2, ' ') + row.second + "\n";
+    text += "  " + row.first + (row.second.empty() ? "" : std::string(width - row.first.size() + 2, ' ') + row.second) +
+            "\n";
   return text;
 }
 

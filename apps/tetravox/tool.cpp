@@ -11,6 +11,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
 #include <variant>
 
 namespace tetravox::tool {
@@ -30,6 +31,13 @@ int run_command(const CommandLine& command_line) {
   return kDone;
 }
 
+/// Where to read on after a wrong command line.
+std::string help_hint(int argc, char** argv) {
+  const std::string command = argc > 1 ? argv[1] : "";
+  const bool is_command = command == "render" || command == "info" || command == "list";
+  return " (see tetravox " + (is_command ? command + " " : "") + "--help)";
+}
+
 }  // namespace
 
 int run_tool(int argc, char** argv) {
@@ -37,7 +45,7 @@ int run_tool(int argc, char** argv) {
   try {
     return run_command(parse_command_line(argc, argv));
   } catch (const UsageError& error) {
-    return report_error(error.what(), kUsage);
+    return report_error(error.what() + help_hint(argc, argv), kUsage);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::kCancelled && interrupt_signal() != 0)
       return report_error("interrupted; nothing was written", 128 + interrupt_signal());
