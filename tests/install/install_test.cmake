@@ -45,7 +45,15 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples/minimal -B ${WORK_DIR}/minimal -G
   -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/minimal)
 run(${WORK_DIR}/minimal/minimal)
+
+# The installed tool draws, and finds the installed reader.
 if(WITH_IO)
-  run(${WORK_DIR}/prefix/bin/tetravox render builtin:sphere --resolution 64,48 -o ${WORK_DIR}/sphere.png)
-  require_file(../sphere.png)
+  file(WRITE ${WORK_DIR}/cell.vtk "# vtk DataFile Version 3.0\none tetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+    "POINTS 4 float\n0 0 0  1 0 0  0 1 0  0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
+    "POINT_DATA 4\nSCALARS height float 1\nLOOKUP_TABLE default\n0 0 0 1\n")
+  run(${CMAKE_COMMAND} -E env --unset=TETRAVOX_READER
+    ${WORK_DIR}/prefix/bin/tetravox render ${WORK_DIR}/cell.vtk --resolution 64,48 -o ${WORK_DIR}/cell.png)
+  if(NOT EXISTS ${WORK_DIR}/cell.png)
+    message(FATAL_ERROR "the installed tool wrote no picture")
+  endif()
 endif()
