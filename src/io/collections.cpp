@@ -5,8 +5,10 @@
 #include <pugixml.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -71,6 +73,37 @@ void collect_block_files(const pugi::xml_node& node, int depth, const std::strin
   }
 }
 
+/// Cells of an extent "i0 i1 j0 j1 k0 k1"; an axis of one point counts as one.
+std::uint64_t extent_cells(const pugi::xml_attribute& attribute, const std::string& source_name) {
+  const char* at = attribute.value();
+  const char* end = at + std::strlen(at);
+  std::uint64_t cells = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::array<std::int32_t, 2> ends{};
+    for (std::int32_t& value : ends) {
+      while (at != end && *at == ' ') ++at;
+      const auto [next, error] = std::from_chars(at, end, value);
+      if (error != std::errc()) fail(source_name, "an extent is not six whole numbers");
+      at = next;
+    }
+    const std::int64_t length = std::int64_t{ends[1]} - ends[0];
+    if (length < 0 || length > (1 << 20)) fail(source_name, "an extent makes no sense");
+    cells *= static_cast<std::uint64_t>(std::max<std::int64_t>(length, 1));
+  }
+  return cells;
+}
+
+/// Pieces of a structured grid must fill its extent, no more and no less.
+void check_extents(const pugi::xml_node& grid, const std::string& source_name) {
+  std::uint64_t cells = 0;
+  for (const pugi::xml_node& piece : grid.children("Piece"))
+    cells += extent_cells(piece.attribute("Extent"), source_name);
+  const std::uint64_t whole = extent_cells(grid.attribute("WholeExtent"), source_name);
+  if (cells != whole)
+    fail(source_name, "its pieces have " + std::to_string(cells) + " cells, and its whole extent " +
+                          std::to_string(whole) + ": they overlap or leave gaps");
+}
+
 }  // namespace
 
 PvdCollection parse_pvd(const std::string& text, const std::string& source_name) {
@@ -114,6 +147,7 @@ FileList parse_file_list(const std::string& text, const std::string& source_name
   const pugi::xml_node grid = root.child(type.c_str());
   if (!grid) fail(source_name, "no element '" + type + "' as its type says");
   list.has_ghost_levels = grid.attribute("GhostLevel").as_int(0) > 0;
+  if (grid.attribute("WholeExtent") && !list.has_ghost_levels) check_extents(grid, source_name);
   for (const pugi::xml_node& piece : grid.children("Piece")) {
     const std::string file = piece.attribute("Source").value();
     check_entry(file, source_name, list.files.size());

@@ -137,8 +137,9 @@ pid_t spawn(const std::string& program, const ReaderRequest& request, int status
 
 /// What the child has said so far.
 struct Conversation {
-  std::string status;   ///< unfinished line of the status pipe
-  std::string printed;  ///< standard output and error
+  std::string status;     ///< unfinished line of the status pipe
+  std::string printed;    ///< standard output and error
+  std::string complaint;  ///< VTK's first
   bool is_done = false;
   std::optional<Error> error;
 };
@@ -150,6 +151,8 @@ void take_line(std::string_view line, Conversation& conversation, const Progress
     double fraction = 0.0;
     std::from_chars(line.data() + 9, line.data() + line.size(), fraction);
     if (progress.report) progress.report("read", std::clamp(fraction, 0.0, 1.0));
+  } else if (line.starts_with("complaint ") && conversation.complaint.empty()) {
+    conversation.complaint = clean_line(std::string(line.substr(10)), 300);
   } else if (line.starts_with("error ") && !conversation.error) {
     int code = 0;
     const auto end = std::from_chars(line.data() + 6, line.data() + line.size(), code).ptr;
@@ -223,12 +226,15 @@ std::string find_complaint(const std::string& printed) {
   return {};
 }
 
-[[noreturn]] void fail_signal(int signal, const std::string& file, const std::string& printed) {
+[[noreturn]] void fail_signal(int signal, const std::string& file, const Conversation& conversation) {
   if (signal == SIGKILL)
     throw Error(ErrorCode::kOutOfMemory, "the reader of '" + file +
                                              "' was killed, most likely for want of memory: free some, or use a "
                                              "smaller file");
-  const std::string complaint = find_complaint(printed);
+  if (!conversation.complaint.empty())
+    throw Error(ErrorCode::kBadFile, "'" + file + "' could not be read: " + conversation.complaint +
+                                         "; the file is damaged or not what its ending says");
+  const std::string complaint = find_complaint(conversation.printed);
   throw Error(ErrorCode::kReaderFailed, "the reader crashed on '" + file + "' (" + strsignal(signal) +
                                             (complaint.empty() ? "" : "; " + complaint) +
                                             "): the file is damaged or not what its ending says; write it again, or in "
@@ -238,7 +244,7 @@ std::string find_complaint(const std::string& printed) {
 /// Throws unless the child ended well and nobody complained.
 void check_end(int status, const Conversation& conversation, const std::string& file) {
   if (conversation.error) throw *conversation.error;
-  if (WIFSIGNALED(status)) fail_signal(WTERMSIG(status), file, conversation.printed);
+  if (WIFSIGNALED(status)) fail_signal(WTERMSIG(status), file, conversation);
   const std::string complaint = find_complaint(conversation.printed);
   if (conversation.is_done && complaint.empty() && WEXITSTATUS(status) == 0) return;
   if (!complaint.empty())

@@ -3,8 +3,8 @@
 /// What the library and the reader process say to each other.
 ///
 /// The parent starts `tetravox-reader protocol=1 key=value ...` with two descriptors: a pipe for one-line messages
-/// ("progress 0.25", "error CODE TEXT", "done") and a memory file. The reader lays its arrays out in the memory file
-/// behind a `SharedHeader` and leaves; only then the parent seals, maps and validates it.
+/// ("progress 0.25", "complaint TEXT", "error CODE TEXT", "done") and a memory file. The reader lays its arrays out in
+/// the memory file behind a `SharedHeader` and leaves; only then the parent seals, maps and validates it.
 
 #include "tetravox/dataset.h"
 #include "tetravox/error.h"

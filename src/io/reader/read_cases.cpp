@@ -1,6 +1,7 @@
 // Simulation codes' formats: Exodus, CGNS, VTKHDF, EnSight, OpenFOAM.
 
 #include "src/io/reader/blocks.h"
+#include "src/io/reader/file_checks.h"
 #include "src/io/reader/status.h"
 
 #include <vtkCGNSReader.h>
@@ -31,6 +32,7 @@ void select_exodus_arrays(vtkExodusIIReader& reader) {
 }  // namespace
 
 FileContents read_exodus(const std::string& path, const TimeRequest& time) {
+  check_netcdf_length(path);
   const vtkNew<vtkExodusIIReader> reader;
   if (!reader->CanReadFile(path.c_str())) fail_file(path, "not an Exodus file that can be opened");
   reader->SetFileName(path.c_str());

@@ -2,6 +2,7 @@
 // with what came.
 
 #include "src/io/reader/blocks.h"
+#include "src/io/reader/file_checks.h"
 
 #include <vtkDataReader.h>
 #include <vtkNew.h>
@@ -15,7 +16,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -23,14 +23,6 @@
 namespace tetravox::io {
 
 namespace {
-
-std::string read_whole(const std::string& path) {
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  std::string text(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
-  in.seekg(0);
-  if (!in.read(text.data(), static_cast<std::streamsize>(text.size()))) fail_file(path, "could not be read to its end");
-  return text;
-}
 
 /// The number that follows `keyword` at the beginning of a line, at its first occurrence; VTK takes both cases.
 std::optional<long long> find_count(std::string_view text, std::string keyword) {
@@ -48,18 +40,26 @@ std::optional<long long> find_count(std::string_view text, std::string keyword) 
   return std::nullopt;
 }
 
-/// The word after DATASET, in lower case; empty where there is none.
+/// The word after DATASET, in lower case, which follows the three lines of the header.
 std::string dataset_type(const std::string& text, const std::string& path) {
   std::istringstream in(text.substr(0, 4096));
-  std::string line;
-  for (int i = 0; i < 4; ++i) std::getline(in, line);
-  std::istringstream words(line);
-  std::string keyword, type;
-  words >> keyword >> type;
+  std::string line, keyword, type;
+  for (int i = 0; i < 3; ++i) std::getline(in, line);
+  in >> keyword >> type;
   for (std::string* word : {&keyword, &type})
     for (char& c : *word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (keyword != "dataset") fail_file(path, "no DATASET in its fourth line");
+  if (keyword != "dataset") fail_file(path, "no DATASET after its header");
   return type;
+}
+
+/// A section of data that has begun holds something, or other data follow it.
+void require_section(const std::string& text, const std::string& path) {
+  const std::size_t last = text.find_last_not_of(" \t\r\n");
+  const std::size_t line = last == std::string::npos ? last : text.rfind('\n', last);
+  if (line == std::string::npos) return;
+  const std::string_view words = std::string_view(text).substr(line + 1);
+  for (const char* keyword : {"POINT_DATA ", "CELL_DATA ", "point_data ", "cell_data "})
+    if (words.starts_with(keyword)) fail_file(path, "it ends where its data should begin");
 }
 
 void require_count(const std::string& text, const char* keyword, vtkIdType count, const std::string& path) {
@@ -83,6 +83,7 @@ FileContents read_with(const std::string& path) {
   data_reader.ReadAllFieldsOn();
   FileContents contents;
   update_reader(*reader, path, {}, contents);
+  contents.times.clear();  // VTK makes one up.
   append_blocks(reader->GetOutputDataObject(0), contents);
   return contents;
 }
@@ -90,8 +91,9 @@ FileContents read_with(const std::string& path) {
 }  // namespace
 
 FileContents read_legacy(const std::string& path) {
-  const std::string text = read_whole(path);
+  const std::string text = read_whole_file(path);
   const std::string type = dataset_type(text, path);
+  require_section(text, path);
   FileContents contents;
   if (type == "unstructured_grid")
     contents = read_with<vtkUnstructuredGridReader>(path);

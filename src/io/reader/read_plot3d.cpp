@@ -111,6 +111,7 @@ FileContents read_plot3d(const std::string& path, const std::string& solution_pa
   }
   if (!solution.empty()) reader->SetQFileName(solution.c_str());
   update_reader(*reader, path, {}, contents);
+  contents.times.clear();  // VTK makes one up.
   append_blocks(reader->GetOutput(), contents);
   if (contents.blocks.empty()) fail_file(path, "not a PLOT3D grid of a known layout");
   for (const auto& block : contents.blocks) {

@@ -2,6 +2,7 @@
 // first, token by token.
 
 #include "src/io/reader/blocks.h"
+#include "src/io/reader/file_checks.h"
 
 #include <vtkAVSucdReader.h>
 #include <vtkNew.h>
@@ -11,7 +12,6 @@
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -141,19 +141,11 @@ void check_text(std::string_view content, const std::string& path) {
   if (cell_values > 0) check_values(text, cells, cell_values, path);
 }
 
-std::string read_whole(const std::string& path) {
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  std::string text(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
-  in.seekg(0);
-  if (!in.read(text.data(), static_cast<std::streamsize>(text.size()))) fail_file(path, "could not be read to its end");
-  return text;
-}
-
 }  // namespace
 
 FileContents read_ucd(const std::string& path) {
   constexpr char kBinaryMagic = 7;
-  const std::string text = read_whole(path);
+  const std::string text = read_whole_file(path);
   if (!text.starts_with(kBinaryMagic)) check_text(text, path);
   const vtkNew<vtkAVSucdReader> reader;
   reader->SetFileName(path.c_str());

@@ -3,6 +3,7 @@
 #include "src/io/collections.h"
 #include "src/io/formats.h"
 #include "src/io/reader/blocks.h"
+#include "src/io/reader/file_checks.h"
 #include "src/io/reader/status.h"
 #include "src/io/time_steps.h"
 
@@ -120,6 +121,7 @@ FileContents read_any(const std::string& path, const TimeRequest& time, int dept
 }  // namespace
 
 FileContents read_xml(const std::string& path, const TimeRequest& time) {
+  check_appended_data(path);
   switch (detect_format(path, false)) {
     case Format::kVts:
       return read_with<vtkXMLStructuredGridReader>(path, time);

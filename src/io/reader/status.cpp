@@ -3,6 +3,7 @@
 #include "src/io/reader_protocol.h"
 #include "src/support/memory.h"
 
+#include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
@@ -31,6 +32,12 @@ void write_all(const char* text, std::size_t size) noexcept {
   }
 }
 
+void send_complaint(const std::string& text) noexcept {
+  write_all("complaint ", 10);
+  write_all(text.data(), text.size());
+  write_all("\n", 1);
+}
+
 /// VTK's message without its place in VTK's sources: what follows the class name and address.
 std::string strip_vtk_message(const char* text) {
   std::string message = text ? text : "";
@@ -41,6 +48,14 @@ std::string strip_vtk_message(const char* text) {
   return clean_line(message, 300);
 }
 
+/// Whether a warning tells of something that could not be read.
+bool is_about_failure(const char* text) {
+  const std::string message = text ? text : "";
+  for (const char* words : {"rror", "ailed", "remature", "ismatch", "annot", "ould not", "nable", "runcated", "orrupt"})
+    if (message.find(words) != std::string::npos) return true;
+  return false;
+}
+
 /// Keeps the first error and the first warning. VTK may complain from any thread.
 class ComplaintKeeper : public vtkOutputWindow {
  public:
@@ -49,8 +64,8 @@ class ComplaintKeeper : public vtkOutputWindow {
   void DisplayText(const char*) override {}
   void DisplayDebugText(const char*) override {}
   void DisplayErrorText(const char* text) override { keep(error_, text); }
-  void DisplayWarningText(const char* text) override { keep(warning_, text); }
-  void DisplayGenericWarningText(const char* text) override { keep(warning_, text); }
+  void DisplayWarningText(const char* text) override { keep(is_about_failure(text) ? error_ : warning_, text); }
+  void DisplayGenericWarningText(const char* text) override { DisplayWarningText(text); }
 
   std::string error() const {
     const std::lock_guard lock(mutex_);
@@ -67,6 +82,7 @@ class ComplaintKeeper : public vtkOutputWindow {
     if (!kept.empty()) return;
     kept = strip_vtk_message(text);
     if (kept.empty()) kept = "VTK gives no reason";
+    send_complaint(kept);  // The parent will want it should this process crash.
   }
   mutable std::mutex mutex_;
   std::string error_, warning_;
@@ -129,6 +145,7 @@ void send_done() noexcept { write_all("done\n", 5); }
 
 void install_error_handlers(const std::string& file, std::uint64_t memory_limit) {
   out_of_memory_message() = describe_out_of_memory(file, memory_limit);
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   vtkOutputWindow::SetInstance(&complaints());
   std::set_new_handler(leave_without_memory);
   std::set_terminate(leave_with_exception);
