@@ -43,10 +43,10 @@ std::string left_out_text(const LeftOut& left_out) {
   const auto add = [&text](std::uint64_t count, const std::string& what) {
     if (count > 0) text += (text.empty() ? "" : ", ") + format_count(count) + " " + what;
   };
-  add(left_out.lower_dimension, "cells without volume (vertices, lines, surfaces)");
-  add(left_out.ghost, "ghost cells");
-  add(left_out.blanked, "blanked cells");
-  add(left_out.unsupported, "volume cells of a type that is not known");
+  add(left_out.lower_dimension, "without volume (vertices, lines, surfaces)");
+  add(left_out.ghost, "ghost");
+  add(left_out.blanked, "blanked");
+  add(left_out.unsupported, "of a type that is not known");
   return text;
 }
 
