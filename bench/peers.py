@@ -22,18 +22,29 @@ class Display:
         reading, writing = os.pipe()
         try:
             self.process = subprocess.Popen(
-                ["Xvfb", "-displayfd", str(writing), "-screen", "0", "2048x2048x24", "-nolisten", "tcp"],
+                ["Xvfb", "-displayfd", str(writing), "-screen", "0", "2048x2048x24", "-nolisten", "tcp", "-noreset"],
                 pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            os.close(writing)
-            ready, _, _ = select.select([reading], [], [], 20)
-            number = os.read(reading, 16).decode().strip() if ready else ""
-            self.name = f":{number}" if number else None
-            self.reason = None if number else "Xvfb did not start"
         except FileNotFoundError:
-            os.close(writing)
             self.reason = "Xvfb is not installed"
+        os.close(writing)
+        number = self.read_number(reading)
         os.close(reading)
+        if number:
+            self.name = f":{number}"
+        elif self.reason is None:
+            self.reason = "Xvfb did not start"
         return self
+
+    @staticmethod
+    def read_number(pipe):
+        """The line that Xvfb writes once it listens; it gives up when the pipe closes before the line ends."""
+        text = b""
+        while not text.endswith(b"\n") and select.select([pipe], [], [], 20)[0]:
+            chunk = os.read(pipe, 16)
+            if not chunk:
+                return ""
+            text += chunk
+        return text.decode().strip()
 
     def __exit__(self, *_):
         if self.process:
@@ -75,7 +86,7 @@ class Peer:
                 raise Failed(f"no answer in {LONGEST_FRAME:.0f} s")
             chunk = os.read(self.process.stdout.fileno(), 65536)
             if not chunk:
-                raise Failed("the peer ended: are python3-vtk9 and python3-numpy installed?")
+                raise Failed("the peer ended early: see what bench/vtk_peer.py says by itself")
             self.pending += chunk
 
     def close(self):

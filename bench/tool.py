@@ -30,12 +30,12 @@ class Tool:
         return seconds
 
     def render(self, scene, *options, output="picture.npy"):
-        """Draws; returns the statistics with `wall`, seconds from the shell to the picture."""
+        """Draws; returns the statistics."""
         statistics = self.path("statistics.json")
         command = [self.program, "render", scene, "-o", self.path(output), "--statistics", statistics, *options]
-        wall = self.run(command)
+        self.run(command)
         with open(statistics) as file:
-            return dict(json.load(file), wall=wall)
+            return json.load(file)
 
     def export(self, builtin, name):
         """Path of the embedded dataset as VTU."""

@@ -115,8 +115,7 @@ def compare(tool, display, scene, peer_scene, size, rounds, exact=None):
             peer.frame()
     row = {
         "size": size,
-        "tetravox": dict(own[-1], seconds=median_seconds(own), wall=statistics.median(run["wall"] for run in own),
-                         error=difference(tool.path("picture.npy"), exact)),
+        "tetravox": dict(own[-1], seconds=median_seconds(own), error=difference(tool.path("picture.npy"), exact)),
     }
     row.update({name: peer.finish(tool.path("peer.npy"), exact) for name, peer in peers.items()})
     return row
