@@ -192,7 +192,7 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
 
 std::uint64_t Renderer::bytes() const {
   return (state_->vertices ? state_->mesh.vertices.size() * 4 * sizeof(float) : 0) + state_->frame_bytes +
-         state_->antiderivative.entries.size() * sizeof(optics::AntiderivativeTable::Entry) +
+         state_->antiderivative.entries.size() * sizeof(optics::AntiderivativeTable::Node) +
          state_->antiderivative.color_variation.size() * sizeof(float) +
          state_->control_points.starts.size() * 11 * sizeof(float) +
          state_->control_points.first_interval.size() * sizeof(std::int32_t);

@@ -9,9 +9,9 @@ namespace tetravox::optics {
 namespace {
 
 /// Nodes that the narrowest piece of the function gets at least, and the bounds of the table's size.
-constexpr double kNodesPerPiece = 512.0;
-constexpr std::int32_t kFewestNodes = 8192;
-constexpr std::int32_t kMostNodes = 65536;
+constexpr double kNodesPerPiece = 128.0;
+constexpr std::int32_t kFewestNodes = 2048;
+constexpr std::int32_t kMostNodes = 16384;
 /// T at the last node, as an integer.
 constexpr double kFullScale = 1 << 30;
 
@@ -143,6 +143,26 @@ void fill_color_variation(const std::vector<Density>& bins, AntiderivativeTable&
   table.largest_color_slope = static_cast<float>(largest);
 }
 
+/// Counts the steps below every node.
+void count_steps(const OpticalFunction& function, const ValueRange& covered, AntiderivativeTable& table) {
+  std::vector<double> steps;
+  for (std::size_t i = 0; i + 1 < function.points.size(); ++i) {
+    const OpticalPoint& a = function.points[i];
+    const OpticalPoint& b = function.points[i + 1];
+    const bool inside = a.value >= covered.min && a.value <= covered.max;
+    if (a.value == b.value && inside && (a.extinction != b.extinction || a.color != b.color)) steps.push_back(a.value);
+  }
+  table.has_steps = !steps.empty();
+  if (!table.has_steps) return;
+  table.steps_before.resize(static_cast<std::size_t>(table.last_node) + 1);
+  const double width = (covered.max - covered.min) / table.last_node;
+  std::size_t passed = 0;
+  for (std::int32_t i = 0; i <= table.last_node; ++i) {
+    while (passed < steps.size() && steps[passed] < covered.min + width * i) ++passed;
+    table.steps_before[i] = static_cast<std::int32_t>(passed);
+  }
+}
+
 }  // namespace
 
 AntiderivativeTable build_antiderivative_table(const OpticalFunction& function, const ScalarMap& map,
@@ -157,28 +177,33 @@ AntiderivativeTable build_antiderivative_table(const OpticalFunction& function, 
   const double width = (covered.max - covered.min) / count;
   table.nodes_per_scalar = static_cast<float>(map.scale / width);
   fill_color_variation(bins, table);
+  count_steps(function, covered, table);
 
+  // The density at a node is the mean over the halves of its two bins; the sums are the integrals of those, linear in
+  // between.
+  const double inverse_width = 1.0 / width;
+  const auto density_at = [&](std::int32_t node, int channel) {
+    return 0.5 * (bins[std::max(node - 1, 0)][channel] + bins[std::min(node, count - 1)][channel]) * inverse_width;
+  };
   double total = 0.0;
-  for (const Density& bin : bins) total += bin[0];
-  const double quantum = total > 0.0 ? total / kFullScale : 1.0;
-  table.quantum = static_cast<float>(quantum / width);
-
-  // Sum the bins into antiderivatives, and average neighbouring bins into densities at the nodes.
-  table.entries.resize(2 * (static_cast<std::size_t>(count) + 1));
-  AntiderivativeTable::Entry* antiderivatives = table.entries.data();
-  AntiderivativeTable::Entry* densities = antiderivatives + count + 1;
-  Density sum{};
-  for (std::int32_t i = 0; i <= count; ++i) {
-    const Density& left = bins[std::max(i - 1, 0)];
-    const Density& right = bins[std::min(i, count - 1)];
-    for (int channel = 0; channel < 4; ++channel) {
-      antiderivatives[i][channel] = static_cast<std::int32_t>(std::lround(sum[channel] / quantum));
-      densities[i][channel] =
-          std::bit_cast<std::int32_t>(static_cast<float>(0.5 * (left[channel] + right[channel]) / width));
-      if (i < count) sum[channel] += bins[i][channel];
+  for (std::int32_t i = 0; i < count; ++i) total += 0.5 * (density_at(i, 0) + density_at(i + 1, 0));
+  const double unit = total > 0.0 ? total / kFullScale : 1.0;
+  table.density_per_unit = static_cast<float>(unit);
+  table.units_per_density = static_cast<float>(1.0 / unit);
+  table.entries.resize(static_cast<std::size_t>(count) + 1);
+  for (int channel = 0; channel < 4; ++channel) {
+    double sum = 0.0, density = density_at(0, channel);
+    for (std::int32_t i = 0; i <= count; ++i) {
+      table.entries[i].sums[channel] = static_cast<std::int32_t>(sum + 0.5);
+      table.entries[i].densities[channel] = static_cast<float>(density);
+      const double next = density_at(std::min(i + 1, count), channel);
+      sum += 0.5 * (density + next) / unit;
+      density = next;
     }
   }
-  const Density below = density_of(eval_optical_function(function, covered.min));
+  const bool starts_here = covered.min <= function.points.front().value;
+  const Density below =
+      density_of(starts_here ? function.points.front() : eval_optical_function(function, covered.min));
   const Density above = density_of(eval_optical_function(function, covered.max));
   for (int channel = 0; channel < 4; ++channel) {
     table.density_below[channel] = static_cast<float>(below[channel]);

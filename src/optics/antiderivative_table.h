@@ -25,26 +25,30 @@ struct ScalarMap {
 
 /// Antiderivatives and densities at equally spaced nodes.
 ///
-/// How we differ from the literature: the antiderivatives are fixed-point integers, so that differences of neighbouring
-/// nodes are exact however large T has grown; and segments that are flat at the table's resolution read the
-/// density at their middle instead of dividing by almost nothing.
+/// The densities rho and rho * colour are averages over one node's width, linear between nodes; the antiderivatives are
+/// their exact integrals. How we differ from the literature: antiderivatives are fixed-point integers, so that
+/// differences of neighbours are exact however large T has grown; and segments that are flat at the table's
+/// resolution take the mean of their two densities instead of dividing by almost nothing.
 struct AntiderivativeTable {
-  /// T, K_red, K_green, K_blue at a node, in units of `quantum`; or rho, rho*red, rho*green, rho*blue (bits of float).
-  using Entry = std::array<std::int32_t, 4>;
-  static_assert(sizeof(Entry) == 16);
-
-  /// A segment is flat where its two nodes are at most this far apart.
-  static constexpr std::int32_t kFlatNodes = 4;
+  struct Node {
+    std::array<std::int32_t, 4> sums{};  ///< T, K_red, K_green, K_blue, in fixed point
+    std::array<float, 4> densities{};    ///< rho, rho * red, rho * green, rho * blue, per world length
+  };
+  static_assert(sizeof(Node) == 32);
 
   std::int32_t last_node = 1;  ///< nodes are 0 ... last_node
-  std::vector<Entry> entries;  ///< [2][last_node + 1]: antiderivatives, then densities
+  std::vector<Node> entries;   ///< [last_node + 1]
   std::vector<float>
       color_variation;  ///< [last_node + 1]: total variation of the visible colour up to the node, largest channel
-  float first = 0.0f;   ///< stored scalar at node 0
-  float nodes_per_scalar = 1.0f;         ///< node = (stored - first) * nodes_per_scalar, rounded
-  float quantum = 1.0f;                  ///< mean extinction = quantum * difference of entries / difference of nodes
-  float largest_color_slope = 0.0f;      ///< bound on the variation of colour between neighbouring nodes
-  std::array<float, 4> density_below{};  ///< rho, rho*color before node 0 ...
+  std::vector<std::int32_t>
+      steps_before;  ///< [last_node + 1]: steps of the function below the node; empty without steps
+  bool has_steps = false;
+  float first = 0.0f;                ///< stored scalar at node 0
+  float nodes_per_scalar = 1.0f;     ///< position in nodes = (stored - first) * nodes_per_scalar
+  float density_per_unit = 1.0f;     ///< mean density = density_per_unit * difference of sums / difference of positions
+  float units_per_density = 1.0f;    ///< its inverse
+  float largest_color_slope = 0.0f;  ///< bound on the change of colour between neighbouring nodes
+  std::array<float, 4> density_below{};  ///< rho, rho * colour before node 0 ...
   std::array<float, 4> density_above{};  ///< ... and after the last node
 };
 
@@ -57,11 +61,10 @@ AntiderivativeTable build_antiderivative_table(const OpticalFunction& function, 
 struct ControlPointTable {
   std::int32_t interval_count = 1;  ///< intervals 0 ... interval_count - 1; interval i ends where i + 1 starts
   std::vector<float> starts;        ///< [interval_count + 1] stored scalars: -inf, control points, +inf
-  std::vector<std::array<float, 4>>
-      densities_front;                       ///< [interval_count] rho, red, green, blue at the start of the interval
-  std::vector<std::array<float, 4>> slopes;  ///< [interval_count] of the same, per stored scalar
-  std::vector<float> references;             ///< [interval_count] scalar at which densities_front holds
-  std::vector<std::int32_t> first_interval;  ///< [buckets]: interval of the lower end of each bucket
+  std::vector<std::array<float, 4>> densities_front;  ///< [interval_count] rho, red, green, blue at `references`
+  std::vector<std::array<float, 4>> slopes;           ///< [interval_count] of the same, per stored scalar
+  std::vector<float> references;                      ///< [interval_count] scalar at which densities_front holds
+  std::vector<std::int32_t> first_interval;           ///< [buckets]: interval of the lower end of each bucket
   float first = 0.0f;
   float buckets_per_scalar = 1.0f;
 };

@@ -6,6 +6,7 @@
 #include "tetravox/progress.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -24,6 +25,7 @@ void with_threads(int threads, Body&& body) {
     body();
     return;
   }
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);
   arena.execute(std::forward<Body>(body));
 }

@@ -34,171 +34,6 @@ HWY_INLINE void composite_piece(Float depth, const Float emission[3], Float rati
   sum.transmittance = hn::Sub(sum.transmittance, hn::Mul(visible, depth));
 }
 
-/// Integrals from tables of antiderivatives (src/optics/antiderivative_table.h).
-///
-/// alpha is exact. The emission is taken as spread like the extinction: C = mean colour * (1 - exp(-tau)). Where the
-/// colour changes by dc within the segment that errs by up to dc tau^2 / 12 (first term of the expansion in tau), so
-/// the segment is cut into pieces wherever that exceeds the tolerance.
-class AntiderivativeIntegrator {
- public:
-  /// What is kept of the front: its node and the antiderivatives there.
-  struct Front {
-    Int node;
-    Int sums[4];
-  };
-
-  explicit AntiderivativeIntegrator(const IntegratorTables& tables)
-      : table_(*tables.antiderivative),
-        entries_(reinterpret_cast<const float*>(table_.entries.data())),
-        split_threshold_(12.0f * tables.tolerance) {}
-
-  HWY_INLINE Front front_at(Float scalar) const {
-    Front front;
-    front.node = nearest_node(position(scalar));
-    load(front.node, front.sums);
-    return front;
-  }
-
-  HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
-    const Float back_position = position(segment.scalar_back);
-    const Int back = nearest_node(back_position);
-    const Int nodes = hn::Sub(back, front.node);
-    const auto flat = hn::Lt(hn::Abs(nodes), hn::Set(kInt, optics::AntiderivativeTable::kFlatNodes + 1));
-
-    // A flat segment reads the density at its middle; any other, the antiderivatives at its back.
-    const Int middle = hn::Add(hn::ShiftRight<1>(hn::Add(back, front.node)), hn::Set(kInt, table_.last_node + 1));
-    Int sums[4];
-    load(hn::IfThenElse(flat, middle, back), sums);
-    const Mask flat_lanes = hn::RebindMask(kFloat, flat);
-    const Float node_count = hn::ConvertTo(kFloat, hn::IfThenElse(flat, hn::Set(kInt, 1), nodes));
-    const Float scale = hn::Div(hn::Mul(segment.length, constant(table_.quantum)), node_count);
-    Float integrals[4];
-    for (int i = 0; i < 4; ++i) {
-      const Float difference = hn::Mul(hn::ConvertTo(kFloat, hn::Sub(sums[i], front.sums[i])), scale);
-      const Float density = hn::Mul(hn::BitCast(kFloat, sums[i]), segment.length);
-      integrals[i] = hn::IfThenElse(flat_lanes, density, difference);
-    }
-
-    // Pick the segments that are thick, or that may change colour too much, or that leave the table.
-    const Float depth = integrals[0];
-    const Float change = hn::Min(constant(1.0f), hn::Mul(hn::Abs(node_count), constant(table_.largest_color_slope)));
-    const Mask thick = hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), change), constant(split_threshold_)),
-                              hn::Gt(depth, constant(0.25f)));
-    const Mask special = hn::Or(thick, hn::Or(outside(back_position), outside(position(segment.scalar_front))));
-    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, special))) {
-      Accumulated special_sum = sum;
-      integrate_special(segment, front.node, back, special, depth, special_sum);
-      composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
-      sum.red = hn::IfThenElse(special, special_sum.red, sum.red);
-      sum.green = hn::IfThenElse(special, special_sum.green, sum.green);
-      sum.blue = hn::IfThenElse(special, special_sum.blue, sum.blue);
-      sum.transmittance = hn::IfThenElse(special, special_sum.transmittance, sum.transmittance);
-    } else {
-      composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
-    }
-
-    // The front stays where it is while the scalar is flat, so that nothing is lost to rounding.
-    front.node = hn::IfThenElse(flat, front.node, back);
-    for (int i = 0; i < 4; ++i) front.sums[i] = hn::IfThenElse(flat, front.sums[i], sums[i]);
-  }
-
- private:
-  HWY_INLINE Float position(Float scalar) const {
-    return hn::Mul(hn::Sub(scalar, constant(table_.first)), constant(table_.nodes_per_scalar));
-  }
-  HWY_INLINE Float inside(Float at) const {
-    return hn::Min(hn::Max(at, constant(0.0f)), constant(static_cast<float>(table_.last_node)));
-  }
-  HWY_INLINE Int nearest_node(Float at) const { return hn::NearestInt(inside(at)); }
-  HWY_INLINE Mask outside(Float at) const {
-    return hn::Or(hn::Lt(at, constant(-1.0f)), hn::Gt(at, constant(static_cast<float>(table_.last_node) + 1.0f)));
-  }
-  HWY_INLINE void load(Int entry, Int sums[4]) const {
-    const Record record = load_records(entries_, hn::BitCast(kUint, entry));
-    sums[0] = hn::BitCast(kInt, record.x);
-    sums[1] = hn::BitCast(kInt, record.y);
-    sums[2] = hn::BitCast(kInt, record.z);
-    sums[3] = hn::BitCast(kInt, record.w);
-  }
-
-  /// A place along the scalar: its node, what lies beyond the table's ends, and the antiderivatives at the node.
-  struct Place {
-    Float node, below, above;
-    Int sums[4];
-  };
-  HWY_INLINE Place place_at(Float at, Int node) const {
-    Place place;
-    place.node = hn::ConvertTo(kFloat, node);
-    place.below = hn::Min(at, constant(0.0f));
-    place.above = hn::Max(hn::Sub(at, constant(static_cast<float>(table_.last_node))), constant(0.0f));
-    load(node, place.sums);
-    return place;
-  }
-
-  /// Optical depth and emission of the piece from `a` to `b` of the given length.
-  HWY_INLINE void integrate_piece(const Place& a, const Place& b, Float length, Float integrals[4]) const {
-    const Float below = hn::Sub(b.below, a.below), above = hn::Sub(b.above, a.above);
-    const Float covered = hn::Sub(b.node, a.node);
-    const Float width = hn::Add(covered, hn::Add(below, above));
-    const Mask flat = hn::Le(hn::Abs(width), constant(static_cast<float>(optics::AntiderivativeTable::kFlatNodes)));
-    const Float inverse = hn::Div(length, hn::IfThenElse(flat, constant(1.0f), width));
-    const Int middle = hn::ConvertTo(kInt, hn::Mul(constant(0.5f), hn::Add(a.node, b.node)));
-    Int densities[4];
-    load(hn::Add(middle, hn::Set(kInt, table_.last_node + 1)), densities);
-    const Mask under = hn::Lt(hn::Add(a.below, b.below), constant(-2.0f));
-    const Mask over = hn::Gt(hn::Add(a.above, b.above), constant(2.0f));
-    for (int i = 0; i < 4; ++i) {
-      const Float low = constant(table_.density_below[i]), high = constant(table_.density_above[i]);
-      Float total = hn::Mul(hn::ConvertTo(kFloat, hn::Sub(b.sums[i], a.sums[i])), constant(table_.quantum));
-      total = multiply_add(low, below, total);
-      total = multiply_add(high, above, total);
-      const Float density = hn::IfThenElse(under, low, hn::IfThenElse(over, high, hn::BitCast(kFloat, densities[i])));
-      integrals[i] = hn::IfThenElse(flat, hn::Mul(density, length), hn::Mul(total, inverse));
-    }
-  }
-
-  /// Cuts the segments of `lanes` into equal pieces, as many as the tolerance asks for, and composites them.
-  HWY_NOINLINE void integrate_special(const Segments& segment, Int front, Int back, Mask lanes, Float depth,
-                                      Accumulated& sum) const {
-    const Float length = hn::IfThenElseZero(lanes, segment.length);
-    const Float front_position = position(segment.scalar_front);
-    const Float span = hn::Sub(position(segment.scalar_back), front_position);
-    const Float start_position = hn::IfThenElse(outside(front_position), front_position, hn::ConvertTo(kFloat, front));
-    const Float stop_position = hn::Add(front_position, span);
-
-    // Pieces: dc (tau / n)^2 / 12 <= tolerance for the piece in which the colour may change at once.
-    const float* variation = table_.color_variation.data();
-    const Float change =
-        hn::Min(constant(1.0f),
-                hn::Abs(hn::Sub(hn::GatherIndex(kFloat, variation, back), hn::GatherIndex(kFloat, variation, front))));
-    Float wanted = hn::Mul(depth, hn::Sqrt(hn::Div(change, constant(split_threshold_))));
-    wanted = hn::Min(wanted, hn::Max(hn::Abs(hn::ConvertTo(kFloat, hn::Sub(back, front))), constant(1.0f)));
-    wanted = hn::IfThenElse(hn::Gt(wanted, constant(1.0f)), wanted, constant(1.0f));
-    const Float pieces = hn::IfThenElse(lanes, hn::Ceil(hn::Min(wanted, constant(4096.0f))), constant(1.0f));
-    const Float share = hn::Div(constant(1.0f), pieces);
-    const Float piece_length = hn::Mul(length, share);
-    const Float step = hn::Mul(hn::Sub(stop_position, start_position), share);
-
-    Place at = place_at(start_position, front);
-    Mask active = lanes;
-    for (Float k = constant(1.0f); !hn::AllFalse(kFloat, active); k = hn::Add(k, constant(1.0f))) {
-      const Mask last = hn::Ge(k, pieces);
-      const Float next_position = hn::IfThenElse(last, stop_position, multiply_add(step, k, start_position));
-      const Place next = place_at(next_position, nearest_node(next_position));
-      Float integrals[4];
-      integrate_piece(at, next, hn::IfThenElseZero(active, piece_length), integrals);
-      composite_piece(integrals[0], integrals + 1, absorbed_ratio(integrals[0]), sum);
-      at = next;
-      // What comes after a millionth of the light has no colour to add.
-      active = hn::AndNot(last, hn::And(active, hn::Gt(sum.transmittance, constant(1e-6f))));
-    }
-  }
-
-  const optics::AntiderivativeTable& table_;
-  const float* entries_;
-  float split_threshold_;
-};
-
 /// Exact evaluation of the control points.
 class ControlPoints {
  public:
@@ -216,9 +51,14 @@ class ControlPoints {
       interval = hn::IfThenElse(int_mask(passed), hn::Add(interval, hn::Set(kInt, 1)), interval);
     }
   }
+  /// The interval in which a ray sets out from `scalar`: one that falls from a control point starts in the interval
+  /// below.
+  HWY_INLINE Int find_front_interval(Float scalar, Mask rising) const {
+    const Int interval = find_interval(scalar);
+    const Mask at_start = hn::AndNot(rising, hn::Eq(start_of(interval), scalar));
+    return hn::Max(hn::IfThenElse(int_mask(at_start), hn::Sub(interval, hn::Set(kInt, 1)), interval), hn::Zero(kInt));
+  }
   HWY_INLINE Float start_of(Int interval) const { return hn::GatherIndex(kFloat, table_.starts.data(), interval); }
-  HWY_INLINE Int last_interval() const { return hn::Set(kInt, table_.interval_count - 1); }
-  int interval_count() const { return table_.interval_count; }
 
   /// Extinction and colour at `scalar` by the line of `interval`.
   HWY_INLINE Record eval(Int interval, Float scalar) const {
@@ -234,12 +74,240 @@ class ControlPoints {
   const optics::ControlPointTable& table_;
 };
 
+/// Goes along a segment from control point to control point and calls `composite(front, back, length)` for each piece,
+/// on which extinction and colour are linear. A piece is no deeper than `deepest` (optical depth).
+template <class Composite>
+HWY_INLINE void for_each_linear_piece(const ControlPoints& points, const Segments& segment, Mask lanes, float deepest,
+                                      const Float& transmittance, const Composite& composite) {
+  const Float one = constant(1.0f);
+  const Float span = hn::Sub(segment.scalar_back, segment.scalar_front);
+  const Mask rising = hn::Ge(span, constant(0.0f));
+  const Mask level = hn::Eq(span, constant(0.0f));
+  const Float divisor = hn::IfThenElse(level, one, span);
+  const Int forward = hn::IfThenElse(int_mask(rising), hn::Set(kInt, 1), hn::Set(kInt, -1));
+  const Int border_side = hn::IfThenElse(int_mask(rising), hn::Set(kInt, 1), hn::Zero(kInt));
+
+  Int interval = points.find_front_interval(segment.scalar_front, rising);
+  Float t = constant(0.0f), scalar = segment.scalar_front;
+  Mask active = hn::And(lanes, hn::Gt(segment.length, constant(0.0f)));
+  while (!hn::AllFalse(kFloat, active)) {
+    // Aim at the next control point or the end, and no further than `deepest`.
+    const Float border = points.start_of(hn::Add(interval, border_side));
+    const Float border_t = hn::Max(hn::Div(hn::Sub(border, segment.scalar_front), divisor), t);
+    const Mask to_end = hn::Or(level, hn::Ge(border_t, one));
+    const Float goal_t = hn::IfThenElse(to_end, one, border_t);
+    const Float goal = hn::IfThenElse(to_end, segment.scalar_back, border);
+    const Record front = points.eval(interval, scalar);
+    const Float steepest = hn::Max(front.x, points.eval(interval, goal).x);
+    const Float reach = hn::Div(constant(deepest), hn::Max(hn::Mul(steepest, segment.length), constant(1e-30f)));
+    const Mask arrives = hn::Le(goal_t, hn::Add(t, reach));
+    const Float next_t = hn::IfThenElse(arrives, goal_t, hn::Add(t, reach));
+    const Float next = hn::IfThenElse(arrives, goal, multiply_add(span, next_t, segment.scalar_front));
+
+    composite(front, points.eval(interval, next),
+              hn::IfThenElseZero(active, hn::Mul(segment.length, hn::Sub(next_t, t))));
+    const Mask done = hn::Or(hn::And(arrives, to_end), hn::Le(transmittance, constant(1e-6f)));
+    const Mask crosses = hn::AndNot(to_end, arrives);
+    interval = hn::IfThenElse(int_mask(crosses), hn::Add(interval, forward), interval);
+    t = next_t;
+    scalar = next;
+    active = hn::AndNot(done, active);
+  }
+}
+
 /// Adds a piece of constant colour.
 HWY_INLINE void composite_uniform(const Record& optics, Float length, Accumulated& sum) {
   const Float depth = hn::Mul(optics.x, length);
   const Float emission[3] = {hn::Mul(depth, optics.y), hn::Mul(depth, optics.z), hn::Mul(depth, optics.w)};
   composite_piece(depth, emission, absorbed_ratio(depth), sum);
 }
+
+/// Integrals from tables of antiderivatives (src/optics/antiderivative_table.h).
+///
+/// alpha is exact. The emission is taken as spread like the extinction: C = mean colour * (1 - exp(-tau)). Where the
+/// colour changes by dc within the segment that errs by up to dc tau^2 / 12 (first term of the expansion in tau), so
+/// the segment is cut into pieces wherever that exceeds the tolerance. Where a segment meets a step of the function,
+/// which no table of nodes can place exactly, it is integrated from control point to control point.
+class AntiderivativeIntegrator {
+ public:
+  /// The function at a scalar: antiderivatives in fixed point, densities rho, rho * colour.
+  struct Point {
+    Float position;  // in nodes
+    Int sums[4];
+    Float densities[4];
+  };
+  using Front = Point;
+
+  explicit AntiderivativeIntegrator(const IntegratorTables& tables)
+      : table_(*tables.antiderivative),
+        entries_(table_.entries.data()),
+        points_(*tables.control_points),
+        split_threshold_(12.0f * tables.tolerance) {}
+
+  HWY_INLINE Front front_at(Float scalar) const { return point_at(position(scalar)); }
+
+  HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
+    const Point back = point_at(position(segment.scalar_back));
+    Float integrals[4];
+    integrate_between(front, back, segment.length, integrals);
+
+    // Pick the segments that are thick, or that may change colour too much, or that leave the table, or meet a step.
+    const Float depth = integrals[0];
+    const Float nodes = hn::Abs(hn::Sub(back.position, front.position));
+    const Float change = hn::Min(constant(1.0f), hn::Mul(nodes, constant(table_.largest_color_slope)));
+    Mask special = hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), change), constant(split_threshold_)),
+                          hn::Gt(depth, constant(0.25f)));
+    special = hn::Or(special, hn::Or(outside(back.position), outside(front.position)));
+    Mask stepped = hn::FirstN(kFloat, 0);
+    if (table_.has_steps) {
+      stepped = meets_step(front.position, back.position);
+      special = hn::Or(special, stepped);
+    }
+    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, special))) {
+      Accumulated other = sum;
+      composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
+      if (!hn::AllFalse(kFloat, stepped)) integrate_exactly(segment, stepped, other);
+      integrate_pieces(segment.length, front, back, hn::AndNot(stepped, special), depth, other);
+      sum.red = hn::IfThenElse(special, other.red, sum.red);
+      sum.green = hn::IfThenElse(special, other.green, sum.green);
+      sum.blue = hn::IfThenElse(special, other.blue, sum.blue);
+      sum.transmittance = hn::IfThenElse(special, other.transmittance, sum.transmittance);
+    } else {
+      composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
+    }
+    front = back;
+  }
+
+ private:
+  HWY_INLINE Float position(Float scalar) const {
+    return hn::Mul(hn::Sub(scalar, constant(table_.first)), constant(table_.nodes_per_scalar));
+  }
+  HWY_INLINE Float last_position() const { return constant(static_cast<float>(table_.last_node)); }
+  HWY_INLINE Float inside(Float at) const { return hn::Min(hn::Max(at, constant(0.0f)), last_position()); }
+  HWY_INLINE Mask outside(Float at) const { return hn::Ne(at, inside(at)); }
+
+  HWY_INLINE Point point_at(Float at) const {
+    const Float clamped = inside(at);
+    const Int node = hn::Min(hn::ConvertTo(kInt, clamped), hn::Set(kInt, table_.last_node - 1));
+    const Float f = hn::Sub(clamped, hn::ConvertTo(kFloat, node));
+    const Float half_f = hn::Mul(constant(0.5f), f);
+    Record sums, low, high;
+    load_neighbours(entries_, hn::BitCast(kUint, node), sums, low, high);
+    const Float scaled = hn::Mul(f, constant(table_.units_per_density));
+    Point point;
+    point.position = at;
+    const auto channel = [&](int i, Float base, Float d0, Float d1) {
+      const Float slope = hn::Sub(d1, d0);
+      const Float mean = multiply_add(half_f, slope, d0);
+      point.sums[i] = hn::Add(hn::BitCast(kInt, base), hn::NearestInt(hn::Mul(scaled, mean)));
+      point.densities[i] = multiply_add(f, slope, d0);
+    };
+    channel(0, sums.x, low.x, high.x);
+    channel(1, sums.y, low.y, high.y);
+    channel(2, sums.z, low.z, high.z);
+    channel(3, sums.w, low.w, high.w);
+    return point;
+  }
+
+  /// Optical depth and emission between two points inside the table.
+  HWY_INLINE void integrate_between(const Point& a, const Point& b, Float length, Float integrals[4]) const {
+    const Float nodes = hn::Sub(b.position, a.position);
+    const Mask flat = hn::Lt(hn::Abs(nodes), constant(1.0f));
+    const Float scale =
+        hn::Div(hn::Mul(length, constant(table_.density_per_unit)), hn::IfThenElse(flat, constant(1.0f), nodes));
+    const Float half = hn::Mul(length, constant(0.5f));
+    for (int i = 0; i < 4; ++i) {
+      const Float difference = hn::Mul(hn::ConvertTo(kFloat, hn::Sub(b.sums[i], a.sums[i])), scale);
+      integrals[i] = hn::IfThenElse(flat, hn::Mul(hn::Add(a.densities[i], b.densities[i]), half), difference);
+    }
+  }
+
+  /// The same where a point may lie beyond the table's ends: there the function is constant.
+  HWY_INLINE void integrate_anywhere(const Point& a, const Point& b, Float length, Float integrals[4]) const {
+    const auto below = [&](Float at) { return hn::Min(at, constant(0.0f)); };
+    const auto above = [&](Float at) { return hn::Max(hn::Sub(at, last_position()), constant(0.0f)); };
+    const Float below_nodes = hn::Sub(below(b.position), below(a.position));
+    const Float above_nodes = hn::Sub(above(b.position), above(a.position));
+    const Float nodes = hn::Sub(b.position, a.position);
+    const Mask flat = hn::Lt(hn::Abs(nodes), constant(1.0f));
+    const Float scale = hn::Div(length, hn::IfThenElse(flat, constant(1.0f), nodes));
+    for (int i = 0; i < 4; ++i) {
+      const Float low = constant(table_.density_below[i]), high = constant(table_.density_above[i]);
+      const auto density = [&](const Point& p) {
+        const Mask under = hn::Lt(p.position, constant(0.0f)), over = hn::Gt(p.position, last_position());
+        return hn::IfThenElse(under, low, hn::IfThenElse(over, high, p.densities[i]));
+      };
+      Float total = hn::Mul(hn::ConvertTo(kFloat, hn::Sub(b.sums[i], a.sums[i])), constant(table_.density_per_unit));
+      total = multiply_add(low, below_nodes, total);
+      total = multiply_add(high, above_nodes, total);
+      const Float mean = hn::Mul(constant(0.5f), hn::Add(density(a), density(b)));
+      integrals[i] = hn::IfThenElse(flat, hn::Mul(mean, length), hn::Mul(total, scale));
+    }
+  }
+
+  HWY_INLINE Int node_at(Float at) const { return hn::ConvertTo(kInt, inside(at)); }
+
+  /// Whether a step of the function lies between the two positions, or within two nodes of either.
+  HWY_INLINE Mask meets_step(Float a, Float b) const {
+    const std::int32_t* steps = table_.steps_before.data();
+    const Int low = node_at(hn::Sub(hn::Min(a, b), constant(2.0f)));
+    const Int high = hn::Min(hn::Add(node_at(hn::Add(hn::Max(a, b), constant(2.0f))), hn::Set(kInt, 1)),
+                             hn::Set(kInt, table_.last_node));
+    return hn::RebindMask(kFloat, hn::Ne(hn::GatherIndex(kInt, steps, low), hn::GatherIndex(kInt, steps, high)));
+  }
+
+  /// Cuts the segments of `lanes` into equal pieces, as many as the tolerance asks for, and composites them.
+  HWY_NOINLINE void integrate_pieces(Float length, const Point& front, const Point& back, Mask lanes, Float depth,
+                                     Accumulated& sum) const {
+    // Pieces: dc (tau / n)^2 / 12 <= tolerance for the piece in which the colour may change at once.
+    const float* variation = table_.color_variation.data();
+    const Float change =
+        hn::Min(constant(1.0f), hn::Abs(hn::Sub(hn::GatherIndex(kFloat, variation, node_at(back.position)),
+                                                hn::GatherIndex(kFloat, variation, node_at(front.position)))));
+    const Float span = hn::Sub(back.position, front.position);
+    Float wanted = hn::Mul(depth, hn::Sqrt(hn::Div(change, constant(split_threshold_))));
+    wanted = hn::IfThenElse(hn::Gt(wanted, constant(1.0f)), wanted, constant(1.0f));
+    const Float pieces = hn::IfThenElse(lanes, hn::Ceil(hn::Min(wanted, constant(4096.0f))), constant(1.0f));
+    const Float share = hn::Div(constant(1.0f), pieces);
+    const Float piece_length = hn::Mul(length, share);
+    const Float step = hn::Mul(span, share);
+
+    Point at = front;
+    Mask active = lanes;
+    for (Float k = constant(1.0f); !hn::AllFalse(kFloat, active); k = hn::Add(k, constant(1.0f))) {
+      const Mask last = hn::Ge(k, pieces);
+      const Point next = point_at(hn::IfThenElse(last, back.position, multiply_add(step, k, front.position)));
+      Float integrals[4];
+      integrate_anywhere(at, next, hn::IfThenElseZero(active, piece_length), integrals);
+      composite_piece(integrals[0], integrals + 1, absorbed_ratio(integrals[0]), sum);
+      at = next;
+      // What comes after a millionth of the light has no colour to add.
+      active = hn::AndNot(last, hn::And(active, hn::Gt(sum.transmittance, constant(1e-6f))));
+    }
+  }
+
+  /// From control point to control point, in pieces so thin that self-attenuation is within the tolerance.
+  HWY_NOINLINE void integrate_exactly(const Segments& segment, Mask lanes, Accumulated& sum) const {
+    const float deepest = std::sqrt(split_threshold_);
+    for_each_linear_piece(points_, segment, lanes, deepest, sum.transmittance,
+                          [&](const Record& a, const Record& b, Float length) {
+                            const Float depth = hn::Mul(hn::Mul(constant(0.5f), hn::Add(a.x, b.x)), length);
+                            const auto emission = [&](Float c0, Float c1) {
+                              // Integral of (c0 + dc t)(rho0 + drho t) over t in [0, 1].
+                              const Float front = multiply_add(hn::Add(a.x, a.x), c0, hn::Mul(a.x, c1));
+                              const Float back = multiply_add(hn::Add(b.x, b.x), c1, hn::Mul(b.x, c0));
+                              return hn::Mul(hn::Mul(hn::Add(front, back), length), constant(1.0f / 6.0f));
+                            };
+                            const Float emissions[3] = {emission(a.y, b.y), emission(a.z, b.z), emission(a.w, b.w)};
+                            composite_piece(depth, emissions, absorbed_ratio(depth), sum);
+                          });
+  }
+
+  const optics::AntiderivativeTable& table_;
+  const optics::AntiderivativeTable::Node* entries_;
+  ControlPoints points_;
+  float split_threshold_;
+};
 
 /// Partial pre-integration: exact for piecewise linear functions (Moreland and Angel 2004), the control points met in
 /// order along the segment (Espinha and Celes 2005).
@@ -253,51 +321,13 @@ class PartialIntegrator {
   HWY_INLINE Front front_at(Float) const { return {}; }
 
   HWY_INLINE void integrate(const Segments& segment, Front&, Accumulated& sum) const {
-    const Float one = constant(1.0f);
-    const Float span = hn::Sub(segment.scalar_back, segment.scalar_front);
-    const Mask rising = hn::Ge(span, constant(0.0f));
-    const Mask level = hn::Eq(span, constant(0.0f));
-    const Float divisor = hn::IfThenElse(level, one, span);
-    const Int forward = hn::IfThenElse(int_mask(rising), hn::Set(kInt, 1), hn::Set(kInt, -1));
-    const Int border_side = hn::IfThenElse(int_mask(rising), hn::Set(kInt, 1), hn::Zero(kInt));
-
-    Int interval = find_front_interval(segment.scalar_front, rising);
-    Float t = constant(0.0f), scalar = segment.scalar_front;
-    Mask active = hn::Gt(segment.length, constant(0.0f));
-    while (!hn::AllFalse(kFloat, active)) {
-      // Aim at the next control point or the end, and no further than the optical depth that the table is good for.
-      const Float border = points_.start_of(hn::Add(interval, border_side));
-      const Float border_t = hn::Max(hn::Div(hn::Sub(border, segment.scalar_front), divisor), t);
-      const Mask to_end = hn::Or(level, hn::Ge(border_t, one));
-      const Float goal_t = hn::IfThenElse(to_end, one, border_t);
-      const Float goal = hn::IfThenElse(to_end, segment.scalar_back, border);
-      const Record front = points_.eval(interval, scalar);
-      const Float steepest = hn::Max(front.x, points_.eval(interval, goal).x);
-      const Float reach = hn::Div(constant(kDeepest), hn::Max(hn::Mul(steepest, segment.length), constant(1e-30f)));
-      const Mask arrives = hn::Le(goal_t, hn::Add(t, reach));
-      const Float next_t = hn::IfThenElse(arrives, goal_t, hn::Add(t, reach));
-      const Float next = hn::IfThenElse(arrives, goal, multiply_add(span, next_t, segment.scalar_front));
-
-      const Float length = hn::IfThenElseZero(active, hn::Mul(segment.length, hn::Sub(next_t, t)));
-      composite_linear(front, points_.eval(interval, next), length, sum);
-      const Mask done = hn::Or(hn::And(arrives, to_end), hn::Le(sum.transmittance, constant(1e-6f)));
-      const Mask crosses = hn::AndNot(to_end, arrives);
-      interval = hn::IfThenElse(int_mask(crosses), hn::Add(interval, forward), interval);
-      t = next_t;
-      scalar = next;
-      active = hn::AndNot(done, active);
-    }
+    for_each_linear_piece(points_, segment, hn::Gt(segment.length, constant(0.0f)), kDeepest, sum.transmittance,
+                          [&](const Record& a, const Record& b, Float length) { composite_linear(a, b, length, sum); });
   }
 
  private:
+  /// The table of psi is fine up to this optical depth.
   static constexpr float kDeepest = 8.0f;
-
-  /// A ray that falls from a control point starts in the interval below it.
-  HWY_INLINE Int find_front_interval(Float scalar, Mask rising) const {
-    const Int interval = points_.find_interval(scalar);
-    const Mask at_start = hn::AndNot(rising, hn::Eq(points_.start_of(interval), scalar));
-    return hn::Max(hn::IfThenElse(int_mask(at_start), hn::Sub(interval, hn::Set(kInt, 1)), interval), hn::Zero(kInt));
-  }
 
   /// C = c0 (1 - psi) + c1 (psi - exp(-tau)), written with 1 - psi and alpha so that nothing cancels.
   HWY_INLINE void composite_linear(const Record& a, const Record& b, Float length, Accumulated& sum) const {

@@ -79,6 +79,17 @@ HWY_INLINE Record load_records(const float* HWY_RESTRICT base, Uint index) {
 #endif
 }
 
+/// Loads the first half of `nodes[index]` and the second halves of it and of its successor, for each lane.
+template <class Node>
+HWY_INLINE void load_neighbours(const Node* nodes, Uint index, Record& first, Record& low, Record& high) {
+  static_assert(sizeof(Node) == 32);
+  const float* base = reinterpret_cast<const float*>(nodes);
+  const Uint doubled = hn::Add(index, index);
+  first = load_records(base, doubled);
+  low = load_records(base + 4, doubled);
+  high = load_records(base + 12, doubled);
+}
+
 /// (1 - exp(-x)) / x for 0 <= x <= 1/4, to 2e-6: the series.
 HWY_INLINE Float absorbed_ratio_series(Float x) {
   Float sum = constant(1.0f / 120.0f);

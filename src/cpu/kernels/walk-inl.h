@@ -335,8 +335,11 @@ class Walker {
 
   static HWY_INLINE void select_front(Mask mask, const typename AntiderivativeIntegrator::Front& from,
                                       typename AntiderivativeIntegrator::Front& to) {
-    to.node = hn::IfThenElse(int_mask(mask), from.node, to.node);
-    for (int i = 0; i < 4; ++i) to.sums[i] = hn::IfThenElse(int_mask(mask), from.sums[i], to.sums[i]);
+    to.position = hn::IfThenElse(mask, from.position, to.position);
+    for (int i = 0; i < 4; ++i) {
+      to.sums[i] = hn::IfThenElse(int_mask(mask), from.sums[i], to.sums[i]);
+      to.densities[i] = hn::IfThenElse(mask, from.densities[i], to.densities[i]);
+    }
   }
   template <class Front>
   static HWY_INLINE void select_front(Mask, const Front&, Front&) {}
