@@ -42,7 +42,8 @@ Scene parse_scene(const std::string& text, const std::string& source_name);
 /// The scene as JSON text that `parse_scene` reads back to the same scene, exactly.
 std::string format_scene(const Scene& scene);
 
-/// What is drawn where the scene leaves it open, from the data.
+/// What is drawn where the scene leaves it open, from the data: the function of `make_default_transfer_function`, and
+/// the view of `make_default_camera`, but fitted to the mesh itself instead of its bounds.
 struct CompletedScene {
   TransferFunction transfer_function;
   OpticalFunction optical_function;
@@ -50,7 +51,11 @@ struct CompletedScene {
 };
 CompletedScene complete_scene(const Scene& scene, const PreparedMesh& mesh);
 
-/// Histogram of the field over the prepared mesh, in values, weighted by volume.
+/// Histogram of the field over the prepared mesh, in values, weighted by volume; `bins` in [1, 2^20]. Values count as
+/// linear in a cell (point data) or constant (cell data). Meshes above 500,000 cells are sampled evenly. A few outliers
+/// that would press everything else into one bin are left to the outermost bins. `unit_distance` follows the mean chord
+/// of the mesh, so that thin bodies are drawn denser. The same on every run, for any number of threads.
+/// @throws Error (kInvalidArgument) for a number of bins out of range.
 Histogram make_histogram(const PreparedMesh& mesh, int bins = 256);
 
 }  // namespace tetravox

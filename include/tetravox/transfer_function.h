@@ -86,6 +86,8 @@ TransferFunction parse_transfer_function(const std::string& text, const std::str
 struct Histogram {
   ValueRange range;
   std::vector<double> counts;
+  /// World length that suits the shape: the default function's unit distance. Empty: diagonal of the bounds / 100.
+  std::optional<double> unit_distance = std::nullopt;
 };
 
 /// The function drawn when nobody asked for one: follows the histogram, so that frequent values (the background) are

@@ -82,10 +82,11 @@ void fit_budget(const std::vector<double>& shares, std::vector<double>& extincti
   }
 }
 
-TransferFunction constant_function(double value, bool invert) {
+TransferFunction constant_function(const Histogram& histogram, bool invert) {
   TransferFunction function;
+  function.unit_distance = histogram.unit_distance;
   function.absorption = Absorption::kOpacity;
-  function.points = {{value, color_at(0.35, invert), opacity_from_extinction(kBodyExtinction)}};
+  function.points = {{histogram.range.min, color_at(0.35, invert), opacity_from_extinction(kBodyExtinction)}};
   return function;
 }
 
@@ -104,6 +105,7 @@ TransferFunction label_function(const Histogram& histogram, const std::vector<do
   };
   TransferFunction function;
   function.absorption = Absorption::kOpacity;
+  function.unit_distance = histogram.unit_distance;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const double u = labels.size() > 1 ? static_cast<double>(i) / static_cast<double>(labels.size() - 1) : 0.35;
     const Color color = color_at(u, invert);
@@ -137,7 +139,7 @@ TransferFunction make_default_transfer_function(const Histogram& histogram, bool
       histogram.range.min > histogram.range.max)
     throw Error(ErrorCode::kInvalidArgument, "a histogram needs bins and a finite range");
   const std::vector<double> raw = normalized(histogram.counts);
-  if (!(histogram.range.max > histogram.range.min)) return constant_function(histogram.range.min, invert);
+  if (!(histogram.range.max > histogram.range.min)) return constant_function(histogram, invert);
   if (const std::vector<std::size_t> labels = find_labels(raw); !labels.empty() && raw.size() > 2)
     return label_function(histogram, raw, labels, invert);
 
@@ -155,6 +157,7 @@ TransferFunction make_default_transfer_function(const Histogram& histogram, bool
 
   TransferFunction function;
   function.absorption = Absorption::kOpacity;
+  function.unit_distance = histogram.unit_distance;
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(shares.size());
     function.points.push_back({std::lerp(histogram.range.min, histogram.range.max, t), color_at(u[i], invert),

@@ -1,5 +1,6 @@
 #include "tetravox/camera.h"
 
+#include "src/scene/camera_fit.h"
 #include "tetravox/error.h"
 
 #include <algorithm>
@@ -11,6 +12,9 @@ namespace tetravox {
 namespace {
 
 constexpr double kLargestViewAngle = 179.9;  // as VTK's SetViewAngle
+constexpr double kViewAngle = 30.0;          // of default cameras, degrees
+constexpr double kMargin = 0.05;             // around what is fitted, of half the picture
+constexpr Vector3 kUp{0, 0, 1};
 
 Vector3 operator+(const Vector3& a, const Vector3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Vector3 operator-(const Vector3& a, const Vector3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -38,27 +42,10 @@ Vector3 rotate(const Vector3& v, const Vector3& axis, double degrees) {
 /// Unit vector from the focal point towards the default camera, for a box with these edge lengths.
 Vector3 default_direction(const Vector3& size) {
   // Look across the longer horizontal edge, from a little to one side, so that a long thing is seen at its full length.
-  const double height = size[2] < 0.3 * std::min(size[0], size[1]) ? 1.5 : 0.9;
+  // Look down steeper on flat things.
+  const double height = size[2] < 0.3 * std::min(size[0], size[1]) ? 1.9 : 0.9;
   if (size[1] > size[0]) return normalize({1.6, -1.0, height});
   return normalize({-1.0, -1.6, height});
-}
-
-/// Where the eye must be along one axis of the picture, and how far back, for a set of points.
-struct AxisFit {
-  double center = 0.0;   ///< of the eye along this axis
-  double forward = 0.0;  ///< the eye's greatest coordinate along the line of sight
-};
-
-/// Fits |a - center| <= slope * (z - forward) for all points, with `forward` as large as it can be.
-AxisFit fit_axis(const std::array<Vector3, 8>& points, const Vector3& axis, const Vector3& view_direction,
-                 double slope) {
-  double upper = -HUGE_VAL, lower = -HUGE_VAL;
-  for (const Vector3& point : points) {
-    const double a = dot(point, axis), z = dot(point, view_direction);
-    upper = std::max(upper, a - slope * z);
-    lower = std::max(lower, -a - slope * z);
-  }
-  return {0.5 * (upper - lower), -(upper + lower) / (2.0 * slope)};
 }
 
 }  // namespace
@@ -82,39 +69,67 @@ void validate_camera(const Camera& camera) {
   }
 }
 
-Camera make_default_camera(const std::array<ValueRange, 3>& bounds, double aspect) {
-  constexpr double kMargin = 0.05;  // of the picture's half height and half width
+namespace scene {
+
+CameraFit::CameraFit(const std::array<ValueRange, 3>& bounds, double aspect) {
   if (!std::isfinite(aspect) || !(aspect > 0.0)) fail("the picture's aspect (width / height) must be above 0");
-  Vector3 center{}, half{};
+  Vector3 half{};
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(bounds[i].min) || !std::isfinite(bounds[i].max) || bounds[i].min > bounds[i].max)
       fail("bounds along axis " + std::to_string(i) + " are not a finite range");
-    center[i] = 0.5 * bounds[i].min + 0.5 * bounds[i].max;
+    center_[i] = 0.5 * bounds[i].min + 0.5 * bounds[i].max;
     half[i] = 0.5 * bounds[i].max - 0.5 * bounds[i].min;
   }
   // Give a single point a size, such that its camera stands apart from it.
   const double largest = std::max({half[0], half[1], half[2]});
-  const double smallest_size = 1e-9 * length(center);
-  if (!(largest > smallest_size)) half.fill(smallest_size > 0.0 ? 1e3 * smallest_size : 0.5);
+  const double smallest = 1e-9 * length(center_);
+  if (!(largest > smallest)) half.fill(smallest > 0.0 ? 1e3 * smallest : 0.5);
+  is_point_ = !(largest > smallest);
+  half_ = half;
 
-  Camera camera;
-  camera.view_up = {0, 0, 1};
-  const Vector3 forward = default_direction(half) * -1.0;
-  const Vector3 right = normalize(cross(forward, camera.view_up));
-  const Vector3 up = cross(right, forward);
+  forward_ = default_direction(half) * -1.0;
+  right_ = normalize(cross(forward_, kUp));
+  up_ = cross(right_, forward_);
+  vertical_.slope = (1.0 - kMargin) * std::tan(0.5 * kViewAngle * std::numbers::pi / 180.0);
+  horizontal_.slope = vertical_.slope * aspect;
+}
 
-  // Fit all corners, about the centre to keep digits where the data is far from the origin.
-  std::array<Vector3, 8> corners;
+void CameraFit::add_corners() {
   for (int i = 0; i < 8; ++i)
-    corners[i] = {(i & 1) ? half[0] : -half[0], (i & 2) ? half[1] : -half[1], (i & 4) ? half[2] : -half[2]};
-  const double slope = (1.0 - kMargin) * std::tan(0.5 * camera.view_angle * std::numbers::pi / 180.0);
-  const AxisFit vertical = fit_axis(corners, up, forward, slope);
-  const AxisFit horizontal = fit_axis(corners, right, forward, slope * aspect);
-  const double depth = std::min(vertical.forward, horizontal.forward);
-  const Vector3 offset = right * horizontal.center + up * vertical.center;
-  camera.position = center + (offset + forward * depth);
-  camera.focal_point = center + offset;
+    add_offset({(i & 1) ? half_[0] : -half_[0], (i & 2) ? half_[1] : -half_[1], (i & 4) ? half_[2] : -half_[2]});
+}
+
+void CameraFit::add_point(const Vector3& point) { add_offset(point - center_); }
+
+void CameraFit::add_offset(const Vector3& offset) {
+  const double z = dot(offset, forward_);
+  horizontal_.add(dot(offset, right_), z);
+  vertical_.add(dot(offset, up_), z);
+}
+
+void CameraFit::Axis::add(double a, double z) {
+  upper = std::max(upper, a - slope * z);
+  lower = std::max(lower, -a - slope * z);
+}
+
+Camera CameraFit::camera() {
+  if (is_point_ || !(vertical_.upper > -HUGE_VAL)) add_corners();
+  const double depth = std::min(vertical_.forward(), horizontal_.forward());
+  const Vector3 offset = right_ * horizontal_.center() + up_ * vertical_.center();
+  Camera camera;
+  camera.view_up = kUp;
+  camera.view_angle = kViewAngle;
+  camera.position = center_ + (offset + forward_ * depth);
+  camera.focal_point = center_ + offset;
   return camera;
+}
+
+}  // namespace scene
+
+Camera make_default_camera(const std::array<ValueRange, 3>& bounds, double aspect) {
+  scene::CameraFit fit(bounds, aspect);
+  fit.add_corners();
+  return fit.camera();
 }
 
 Camera rotate_camera(const Camera& camera, double azimuth, double elevation) {

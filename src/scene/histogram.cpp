@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace tetravox {
 namespace {
@@ -66,12 +67,39 @@ ValueRange robust_range(const std::vector<CellSample>& samples, ValueRange range
   return range;
 }
 
+double boundary_area(const PreparedMesh& mesh) {
+  double area = 0.0;
+  for (const BoundaryFace& face : mesh.boundary) {
+    const Vertex &a = mesh.vertices[face.vertices[0]], &b = mesh.vertices[face.vertices[1]],
+                 &c = mesh.vertices[face.vertices[2]];
+    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
+    area += 0.5 * std::hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
+  }
+  return area;
+}
+
+/// Unit distance for which the mean chord of the mesh, 4 volume / area (Cauchy 1841), is as many units long as that of
+/// a cube of the same diagonal. `volume` is in the local frame.
+std::optional<double> suitable_unit_distance(const PreparedMesh& mesh, double volume) {
+  constexpr double kChordOfCube = 38.49;  // hundredths of the diagonal: 2 / (3 sqrt(3))
+  constexpr double kSmallest = 1.0 / 20, kLargest = 1.5;
+  const double unit = std::hypot(mesh.bounds[0].max - mesh.bounds[0].min, mesh.bounds[1].max - mesh.bounds[1].min,
+                                 mesh.bounds[2].max - mesh.bounds[2].min) /
+                      100.0;
+  const double area = boundary_area(mesh);
+  if (!(unit > 0.0) || !(area > 0.0) || !(volume > 0.0)) return std::nullopt;
+  const double chord = 4.0 * volume / area * mesh.world_per_local;
+  return std::clamp(chord / kChordOfCube, kSmallest * unit, kLargest * unit);
+}
+
 }  // namespace
 
 Histogram make_histogram(const PreparedMesh& mesh, int bins) {
   if (bins < 1 || bins > kLargestBinCount)
     throw Error(ErrorCode::kInvalidArgument, "a histogram has from 1 to 1048576 bins");
-  Histogram histogram{mesh.scalar_range, std::vector<double>(static_cast<std::size_t>(bins))};
+  Histogram histogram;
+  histogram.range = mesh.scalar_range;
+  histogram.counts.resize(static_cast<std::size_t>(bins));
   const std::vector<CellSample> samples = scene::sample_cells(mesh, kLargestSampleCount);
   ValueRange range{HUGE_VAL, -HUGE_VAL};
   double volume = 0.0;
@@ -83,6 +111,9 @@ Histogram make_histogram(const PreparedMesh& mesh, int bins) {
       range.max = std::max<double>(range.max, scalar);
     }
   }
+  const double stride =
+      static_cast<double>(mesh.cells.size()) / static_cast<double>(std::max<std::size_t>(1, samples.size()));
+  histogram.unit_distance = suitable_unit_distance(mesh, volume * stride);
   if (!(range.max > range.min)) {
     histogram.counts[histogram.counts.size() / 2] = volume > 0.0 ? volume : 1.0;
     return histogram;
