@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <sstream>
 
 namespace tetravox::analytic {
 namespace {
@@ -77,20 +78,28 @@ Rgba integrate(double length, const std::function<Medium(double)>& medium_at) {
 }
 
 ::testing::AssertionResult shows(const Image& image, const Camera& camera,
-                                 const std::function<Rgba(const Ray&)>& expected, double tolerance) {
-  int covered = 0;
+                                 const std::function<Rgba(const Ray&)>& expected, const Tolerance& tolerance) {
+  int covered = 0, failures = 0;
+  double worst = 1.0;
+  std::ostringstream message;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const Rgba wanted = expected(make_ray(camera, image.width, image.height, x, y));
       covered += wanted[3] > 0.0;
       for (int k = 0; k < 4; ++k) {
-        if (std::abs(image.pixel(x, y)[k] - wanted[k]) <= tolerance) continue;
-        return ::testing::AssertionFailure()
-               << "pixel (" << x << ", " << y << ") channel " << k << " is " << image.pixel(x, y)[k] << ", not "
-               << wanted[k] << " within " << tolerance;
+        const double excess =
+            std::abs(image.pixel(x, y)[k] - wanted[k]) / (k < 3 ? tolerance.color : tolerance.opacity);
+        if (excess <= 1.0) continue;  // false for what is not a number
+        ++failures;
+        if (excess <= worst) continue;
+        worst = excess;
+        message.str("");
+        message << "; the worst: pixel (" << x << ", " << y << ") channel " << k << " is " << image.pixel(x, y)[k]
+                << ", not " << wanted[k] << ", off by " << image.pixel(x, y)[k] - wanted[k];
       }
     }
   }
+  if (failures > 0) return ::testing::AssertionFailure() << failures << " values are off" << message.str();
   if (10 * covered >= image.width * image.height) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure() << "only " << covered << " pixels show anything: a weak test";
 }

@@ -47,9 +47,15 @@ struct Medium {
 };
 Rgba integrate(double length, const std::function<Medium(double)>& medium_at);
 
-/// Holds where every pixel is what `expected` says, to `tolerance`, and at least a tenth of the pixels is not empty.
+/// Absolute, of premultiplied values.
+struct Tolerance {
+  double color = 1e-5;
+  double opacity = 1e-5;
+};
+
+/// Holds where every pixel is what `expected` says, and at least a tenth of the pixels is not empty. Names the worst.
 ::testing::AssertionResult shows(const Image& image, const Camera& camera,
-                                 const std::function<Rgba(const Ray&)>& expected, double tolerance);
+                                 const std::function<Rgba(const Ray&)>& expected, const Tolerance& tolerance);
 
 /// Three views of something about as large as [-1, 1]^3 at the origin: perspective, orthographic, from inside.
 std::vector<std::pair<const char*, Camera>> standard_cameras();

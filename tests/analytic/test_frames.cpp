@@ -51,6 +51,8 @@ struct Frame {
   Vector3 centre;
 };
 
+void PrintTo(const Frame& frame, std::ostream* out) { *out << frame.name; }
+
 class Frames : public ::testing::TestWithParam<Frame> {};
 
 TEST_P(Frames, ThePictureIsTheSame) {
@@ -81,6 +83,8 @@ struct Values {
   const char* name;
   double factor, offset;
 };
+
+void PrintTo(const Values& values, std::ostream* out) { *out << values.name; }
 
 class ValueFrames : public ::testing::TestWithParam<Values> {};
 

@@ -25,7 +25,8 @@ double one(const Vector3&) { return 1.0; }
 class Shapes : public ::testing::TestWithParam<Integrator> {
  protected:
   /// Draws `mesh` from all standard cameras; `length` says how much of a ray lies inside.
-  void expect_lengths(const MeshData& mesh, const std::function<double(const Ray&)>& length, double tolerance) const {
+  void expect_lengths(const MeshData& mesh, const std::function<double(const Ray&)>& length,
+                      const Tolerance& tolerance = {}) const {
     const PreparedMesh prepared = prepare_mesh(mesh);
     for (const auto& [name, camera] : standard_cameras()) {
       const Image image = render(prepared, kHomogeneous, camera, make_settings(GetParam(), 67, 51));
@@ -44,26 +45,19 @@ TEST_P(Shapes, TwoPartsAreSeenOneThroughTheOther) {
   right.type = CellType::kTetrahedron;
   tests::add_box(builder, left, one);
   tests::add_box(builder, right, one);
-  expect_lengths(
-      builder.build(),
-      [&](const Ray& ray) {
-        return intersect_box(ray, left.lower, left.upper).length() +
-               intersect_box(ray, right.lower, right.upper).length();
-      },
-      1e-5);
+  expect_lengths(builder.build(), [&](const Ray& ray) {
+    return intersect_box(ray, left.lower, left.upper).length() + intersect_box(ray, right.lower, right.upper).length();
+  });
 }
 
 TEST_P(Shapes, AHoleIsEmpty) {
   BoxOptions options;
   options.bricks = {5, 5, 5};
   options.is_hole = [](int i, int j, int k) { return i >= 1 && i < 3 && j >= 2 && j < 4 && k >= 1 && k < 4; };
-  expect_lengths(
-      make_box(options, one),
-      [](const Ray& ray) {
-        return intersect_box(ray, {-1, -1, -1}, {1, 1, 1}).length() -
-               intersect_box(ray, {-0.6, -0.2, -0.6}, {0.2, 0.6, 0.6}).length();
-      },
-      1e-5);
+  expect_lengths(make_box(options, one), [](const Ray& ray) {
+    return intersect_box(ray, {-1, -1, -1}, {1, 1, 1}).length() -
+           intersect_box(ray, {-0.6, -0.2, -0.6}, {0.2, 0.6, 0.6}).length();
+  });
 }
 
 TEST_P(Shapes, ABentOutlineIsLeftAndEnteredAgain) {
@@ -71,15 +65,12 @@ TEST_P(Shapes, ABentOutlineIsLeftAndEnteredAgain) {
   options.bricks = {6, 4, 5};
   options.type = CellType::kWedge;
   options.is_hole = [](int i, int j, int) { return (i == 1 || i == 3) && j >= 1; };
-  expect_lengths(
-      make_box(options, one),
-      [](const Ray& ray) {
-        const double third = 1.0 / 3.0;
-        return intersect_box(ray, {-1, -1, -1}, {1, 1, 1}).length() -
-               intersect_box(ray, {-2 * third, -0.5, -1}, {-third, 1, 1}).length() -
-               intersect_box(ray, {0.0, -0.5, -1}, {third, 1, 1}).length();
-      },
-      1e-5);
+  expect_lengths(make_box(options, one), [](const Ray& ray) {
+    const double third = 1.0 / 3.0;
+    return intersect_box(ray, {-1, -1, -1}, {1, 1, 1}).length() -
+           intersect_box(ray, {-2 * third, -0.5, -1}, {-third, 1, 1}).length() -
+           intersect_box(ray, {0.0, -0.5, -1}, {third, 1, 1}).length();
+  });
 }
 
 TEST_P(Shapes, CornersWithoutAValueTakeTheirCellsAndNothingElse) {
@@ -90,14 +81,11 @@ TEST_P(Shapes, CornersWithoutAValueTakeTheirCellsAndNothingElse) {
     if (is_middle) return std::numeric_limits<double>::quiet_NaN();
     return is_corner ? std::numeric_limits<double>::infinity() : 1.0;
   };
-  expect_lengths(
-      make_box({}, field),
-      [](const Ray& ray) {
-        return intersect_box(ray, {-1, -1, -1}, {1, 1, 1}).length() -
-               intersect_box(ray, {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}).length() -
-               intersect_box(ray, {0.5, 0.5, 0.5}, {1, 1, 1}).length();
-      },
-      1e-5);
+  expect_lengths(make_box({}, field), [](const Ray& ray) {
+    return intersect_box(ray, {-1, -1, -1}, {1, 1, 1}).length() -
+           intersect_box(ray, {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}).length() -
+           intersect_box(ray, {0.5, 0.5, 0.5}, {1, 1, 1}).length();
+  });
 }
 
 TEST_P(Shapes, CellsWithoutAValueAreEmpty) {
@@ -106,13 +94,10 @@ TEST_P(Shapes, CellsWithoutAValueAreEmpty) {
   const auto field = [](const Vector3& p) {
     return p[0] > 0.5 && p[1] > 0.5 ? std::numeric_limits<double>::quiet_NaN() : 1.0;
   };
-  expect_lengths(
-      make_box(options, field),
-      [](const Ray& ray) {
-        return intersect_box(ray, {-1, -1, -1}, {1, 1, 1}).length() -
-               intersect_box(ray, {0.5, 0.5, -1}, {1, 1, 1}).length();
-      },
-      1e-5);
+  expect_lengths(make_box(options, field), [](const Ray& ray) {
+    return intersect_box(ray, {-1, -1, -1}, {1, 1, 1}).length() -
+           intersect_box(ray, {0.5, 0.5, -1}, {1, 1, 1}).length();
+  });
 }
 
 /// A ball of n^3 bricks: each point of the cube is pulled in to the sphere of its layer.

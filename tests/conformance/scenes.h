@@ -5,6 +5,7 @@
 #include "tests/common/cameras.h"
 #include "tests/common/draw.h"
 #include "tests/common/functions.h"
+#include "tests/common/image_compare.h"
 #include "tests/common/mesh_builder.h"
 
 #include <algorithm>
@@ -27,6 +28,11 @@ struct Subject {
     return std::find_if(cameras.begin(), cameras.end(), [&](const auto& c) { return c.name == name; })->camera;
   }
 };
+
+/// The bounds that the exact integrators promise: `antiderivative` half an 8-bit step, `partial` a twentieth.
+inline ::testing::AssertionResult agrees(const Image& actual, const Image& expected, Integrator integrator) {
+  return tests::images_agree(actual, expected, integrator == Integrator::kPartial ? 2e-4 : 2e-3, 2e-4);
+}
 
 inline Subject make_subject(const MeshData& data) {
   Subject subject;

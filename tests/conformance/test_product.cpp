@@ -120,6 +120,8 @@ struct Size {
   int width, height;
 };
 
+void PrintTo(const Size& size, std::ostream* out) { *out << size.width << "x" << size.height; }
+
 /// Every pixel of an odd-sized picture is the pixel of an exact picture: nothing lost in tiles and packets.
 class Resolutions : public ::testing::TestWithParam<Size> {};
 

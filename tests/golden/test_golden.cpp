@@ -22,6 +22,8 @@ struct Picture {
   const char* preset;  ///< empty: the function from the data's histogram
 };
 
+void PrintTo(const Picture& picture, std::ostream* out) { *out << picture.name; }
+
 constexpr Picture kPictures[] = {{"sphere", "sphere", "viridis:peaks=4"},
                                  {"buckyball", "buckyball?cells=50000", ""},
                                  {"duct", "duct", "coolwarm:ramp"}};
