@@ -62,6 +62,15 @@ struct Job {
   PictureStatistics statistics;
 };
 
+/// @throws Error (kCannotWrite) before any long work where the directory of an output is missing.
+void require_directory(const std::string& path) {
+  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
+  std::error_code ignored;
+  if (!parent.empty() && !std::filesystem::is_directory(parent, ignored))
+    throw Error(ErrorCode::kCannotWrite, "cannot write '" + path + "': there is no directory '" + parent.string() +
+                                             "'; make the directory first");
+}
+
 /// Name of the picture, and that it can be written as asked, before any long work.
 std::string choose_output(const RenderOptions& options, const SceneInput& input) {
   const std::string output = options.output.empty() ? input.name + ".png" : options.output;
@@ -73,6 +82,7 @@ std::string choose_output(const RenderOptions& options, const SceneInput& input)
   std::error_code ignored;
   if (options.output.empty() && std::filesystem::equivalent(output, options.input.input, ignored))
     throw UsageError("--output: name the picture, the default would replace the input " + output);
+  for (const std::string& path : {output, options.save_scene, options.statistics}) require_directory(path);
   return output;
 }
 

@@ -47,8 +47,8 @@ int run_tool(int argc, char** argv) {
   } catch (const UsageError& error) {
     return report_error(error.what() + help_hint(argc, argv), kUsage);
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::kCancelled && interrupt_signal() != 0)
-      return report_error("interrupted; nothing was written", 128 + interrupt_signal());
+    // Ctrl-C reaches the reader process too: then what failed is the reader, and the reason is still the signal.
+    if (interrupt_signal() != 0) return report_error("interrupted; nothing was written", 128 + interrupt_signal());
     return report_error(error.what(), kFailed);
   } catch (const std::bad_alloc&) {
     return report_error("not enough memory: use a smaller --resolution or mesh, or a larger machine", kFailed);

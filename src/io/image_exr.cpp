@@ -24,6 +24,7 @@ namespace tetravox::io {
 namespace {
 
 constexpr char kSceneAttribute[] = "tetravox_scene";
+constexpr int kCompressionLevel = 2;               // of 9: higher ones take twice the time for a few per cent
 constexpr std::size_t kLargestName = 255;          // bytes of an attribute's name, by the format
 constexpr std::uint32_t kLargestText = 64u << 20;  // bytes of a scene
 constexpr std::uint64_t kLargestHeader = 256u << 20;
@@ -43,6 +44,7 @@ class ExrStream final : public Imf::OStream {
 Imf::Header make_header(const Image& image, const std::string& scene) {
   Imf::Header header(image.width, image.height, 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
   for (const char* channel : {"R", "G", "B", "A"}) header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+  header.zipCompressionLevel() = kCompressionLevel;
   header.insert("software", Imf::StringAttribute("tetravox"));
   if (!scene.empty()) header.insert(kSceneAttribute, Imf::StringAttribute(scene));
   return header;

@@ -47,6 +47,7 @@ Running ToolTest::start(const std::vector<std::string>& arguments) const {
   argv.push_back(nullptr);
   running.pid = ::fork();
   if (running.pid == 0) {
+    ::setpgid(0, 0);
     const int out = ::open(running.out.c_str(), O_CREAT | O_WRONLY, 0600);
     const int err = ::open(running.err.c_str(), O_CREAT | O_WRONLY, 0600);
     if (out < 0 || err < 0 || ::chdir(directory_.c_str()) != 0) ::_exit(99);
@@ -55,6 +56,7 @@ Running ToolTest::start(const std::vector<std::string>& arguments) const {
     ::execv(TETRAVOX_TOOL, argv.data());
     ::_exit(98);
   }
+  ::setpgid(running.pid, running.pid);
   return running;
 }
 

@@ -32,6 +32,7 @@ class ToolTest : public testing::Test {
   void TearDown() override;
 
   Result run(const std::vector<std::string>& arguments) const;
+  /// The process leads a group of its own, as a job of a shell does.
   Running start(const std::vector<std::string>& arguments) const;
   /// Waits at most `seconds`, then kills the process and fails the test.
   Result finish(const Running& running, double seconds = 50.0) const;

@@ -50,6 +50,21 @@ TEST_F(Interrupt, SecondSignalKillsAtOnce) {
   EXPECT_TRUE(names().empty());
 }
 
+TEST_F(Interrupt, WholeGroupLikeATerminal) {
+  // Ctrl-C in a terminal reaches the reader as well: whichever ends first, it is an interrupt.
+  write_tetrahedron("one.vtk");
+  for (int milliseconds = 0; milliseconds < 60; milliseconds += 4) {
+    std::filesystem::remove(path("one.png"));
+    const Running running = start({"render", "one.vtk", "--resolution", "64,64"});
+    wait(milliseconds);
+    ::kill(-running.pid, SIGINT);
+    const Result result = finish(running, 5.0);
+    EXPECT_TRUE(result.code == 130 || result.code == 0) << result.code << " " << result.err;
+    EXPECT_EQ(std::filesystem::exists(path("one.png")), result.code == 0);
+    EXPECT_EQ(names().size(), result.code == 0 ? 2u : 1u);
+  }
+}
+
 TEST_F(Interrupt, WhileReadingLeavesNoChild) {
   // A reader that waits for a pipe that nobody writes to.
   ASSERT_EQ(::mkfifo(path("slow.vtk").c_str(), 0600), 0);
