@@ -4,21 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace tetravox {
 namespace {
 
 // A ray across a cube is 58 hundredths of the diagonal long; most objects are a little thinner.
 constexpr double kRayLength = 50.0;
-constexpr double kOpticalDepth = 1.6;       // of a ray through everything
-constexpr double kLargestExtinction = 0.6;  // in a hundredth of the diagonal
-constexpr double kBodyExtinction = 0.03;    // where all is alike
+constexpr double kOpticalDepth = 2.0;      // of a ray through everything
+constexpr double kSolidExtinction = 0.6;   // of rare values, in a hundredth of the diagonal
+constexpr double kBodyExtinction = 0.025;  // where all is alike
 constexpr int kShellCount = 6;
 constexpr double kShellWidth = 0.22;  // half width, in distances between shells
 constexpr double kBodyShare = 0.10;   // extinction between the shells, relative to their peaks
 constexpr double kRarity = 0.75;      // 0: alike; 1: every value has the same share of the optical depth
-constexpr int kLargestLabelCount = 40;
+constexpr std::size_t kLargestLabelCount = 40;
+constexpr std::size_t kLargestBinCount = 1024;
 
 double opacity_from_extinction(double extinction) { return -std::expm1(-extinction); }
 
@@ -37,6 +37,14 @@ std::vector<double> normalized(const std::vector<double>& counts) {
   for (std::size_t i = 0; i < counts.size(); ++i)
     shares[i] = std::isfinite(counts[i]) && counts[i] > 0.0 ? counts[i] / total : 0.0;
   return shares;
+}
+
+/// The same shares in at most `kLargestBinCount` bins.
+std::vector<double> rebinned(const std::vector<double>& shares) {
+  if (shares.size() <= kLargestBinCount) return shares;
+  std::vector<double> result(kLargestBinCount);
+  for (std::size_t i = 0; i < shares.size(); ++i) result[i * kLargestBinCount / shares.size()] += shares[i];
+  return result;
 }
 
 /// Smoothed by a Gaussian whose standard deviation is `sigma` bins; the sum stays.
@@ -71,14 +79,19 @@ std::vector<double> positions(const std::vector<double>& shares) {
   return u;
 }
 
-/// Scales extinctions to the budget of optical depth, none above the largest.
+/// Scales extinctions to the budget of optical depth. Rare values may be nearly solid; the most frequent ones stay
+/// thin, even where there is nothing else to spend the budget on.
 void fit_budget(const std::vector<double>& shares, std::vector<double>& extinctions) {
   for (int pass = 0; pass < 8; ++pass) {
     double mean = 0.0;
     for (std::size_t i = 0; i < shares.size(); ++i) mean += shares[i] * extinctions[i];
     if (!(mean > 0.0)) return;
     const double scale = kOpticalDepth / (kRayLength * mean);
-    for (double& extinction : extinctions) extinction = std::min(extinction * scale, kLargestExtinction);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      const double density = shares[i] * static_cast<double>(shares.size());
+      const double largest = kBodyExtinction + kSolidExtinction / std::max(1.0, density);
+      extinctions[i] = std::min(extinctions[i] * scale, largest);
+    }
   }
 }
 
@@ -138,7 +151,7 @@ TransferFunction make_default_transfer_function(const Histogram& histogram, bool
   if (histogram.counts.empty() || !std::isfinite(histogram.range.min) || !std::isfinite(histogram.range.max) ||
       histogram.range.min > histogram.range.max)
     throw Error(ErrorCode::kInvalidArgument, "a histogram needs bins and a finite range");
-  const std::vector<double> raw = normalized(histogram.counts);
+  const std::vector<double> raw = rebinned(normalized(histogram.counts));
   if (!(histogram.range.max > histogram.range.min)) return constant_function(histogram, invert);
   if (const std::vector<std::size_t> labels = find_labels(raw); !labels.empty() && raw.size() > 2)
     return label_function(histogram, raw, labels, invert);
@@ -153,7 +166,7 @@ TransferFunction make_default_transfer_function(const Histogram& histogram, bool
     const double shell = std::exp(-0.5 * phase * phase / (0.25 * kShellWidth * kShellWidth));
     extinctions[i] = (kBodyShare + shell) * std::pow(density + 0.02, -kRarity);
   }
-  fit_budget(shares, extinctions);
+  fit_budget(raw, extinctions);
 
   TransferFunction function;
   function.absorption = Absorption::kOpacity;
