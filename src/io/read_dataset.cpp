@@ -21,9 +21,9 @@ int pick_component(const ArrayInfo& array, const ArrayRequest& request) {
   return array.components == 1 ? 0 : request.component.value_or(kMagnitude);
 }
 
-/// Makes an embedded dataset and holds its one field against the request.
+/// Makes an embedded dataset with the field that is asked for.
 Dataset read_builtin(const std::string& path, const ReadOptions& options) {
-  Dataset dataset = make_builtin(path);
+  Dataset dataset = make_builtin(path, options.array);
   const ArrayInfo& array = dataset.info.arrays.at(choose_array(dataset.info, options.array));
   dataset.mesh.component = pick_component(array, options.array);
   dataset.info.time_index = io::pick_time(dataset.info.times, options.time, path);
