@@ -386,7 +386,7 @@ TEST(Views, VeryFarAndVeryNear) {
                                   return analytic::fill(kColor,
                                                         0.8 * analytic::intersect_box(ray, kLower, kUpper).length());
                                 },
-                                {1e-5, 1e-5}))
+                                {1e-4, 1e-4}))
         << angle;
   }
 }
