@@ -13,6 +13,8 @@ constexpr double kRayLength = 50.0;
 constexpr double kOpticalDepth = 2.0;      // of a ray through everything
 constexpr double kSolidExtinction = 0.6;   // of rare values, in a hundredth of the diagonal
 constexpr double kBodyExtinction = 0.025;  // where all is alike
+constexpr double kThinnestBody = 0.005;    // of the most frequent values, where rare ones are to be seen
+constexpr double kLeastDepth = 0.9;        // of a ray, if need be with a thicker body
 constexpr int kShellCount = 6;
 constexpr double kShellWidth = 0.22;  // half width, in distances between shells
 constexpr double kBodyShare = 0.10;   // extinction between the shells, relative to their peaks
@@ -79,20 +81,30 @@ std::vector<double> positions(const std::vector<double>& shares) {
   return u;
 }
 
-/// Scales extinctions to the budget of optical depth. Rare values may be nearly solid; the most frequent ones stay
-/// thin, even where there is nothing else to spend the budget on.
-void fit_budget(const std::vector<double>& shares, std::vector<double>& extinctions) {
-  for (int pass = 0; pass < 8; ++pass) {
-    double mean = 0.0;
-    for (std::size_t i = 0; i < shares.size(); ++i) mean += shares[i] * extinctions[i];
-    if (!(mean > 0.0)) return;
-    const double scale = kOpticalDepth / (kRayLength * mean);
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      const double density = shares[i] * static_cast<double>(shares.size());
-      const double largest = kBodyExtinction + kSolidExtinction / std::max(1.0, density);
-      extinctions[i] = std::min(extinctions[i] * scale, largest);
+/// Optical depth of a ray on which values are as frequent as in the data.
+double mean_depth(const std::vector<double>& shares, const std::vector<double>& extinctions) {
+  double mean = 0.0;
+  for (std::size_t i = 0; i < shares.size(); ++i) mean += shares[i] * extinctions[i];
+  return kRayLength * mean;
+}
+
+/// Scales extinctions to the budget of optical depth. Rare values may be nearly solid. The most frequent ones stay
+/// below `body`, which is raised only as far as it takes to see something at all.
+std::vector<double> fit_budget(const std::vector<double>& shares, const std::vector<double>& extinctions) {
+  std::vector<double> fitted;
+  for (double body = kThinnestBody; body <= kBodyExtinction; body *= 1.25) {
+    fitted = extinctions;
+    for (int pass = 0; pass < 8; ++pass) {
+      const double depth = mean_depth(shares, fitted);
+      if (!(depth > 0.0)) break;
+      for (std::size_t i = 0; i < shares.size(); ++i) {
+        const double density = shares[i] * static_cast<double>(shares.size());
+        fitted[i] = std::min(fitted[i] * kOpticalDepth / depth, body + kSolidExtinction / std::max(1.0, density));
+      }
     }
+    if (mean_depth(shares, fitted) > kLeastDepth) break;
   }
+  return fitted;
 }
 
 TransferFunction constant_function(const Histogram& histogram, bool invert) {
@@ -111,7 +123,7 @@ TransferFunction label_function(const Histogram& histogram, const std::vector<do
     label_shares.push_back(shares[bin]);
     extinctions.push_back(std::pow(shares[bin] + 1e-4, -kRarity));
   }
-  fit_budget(label_shares, extinctions);
+  extinctions = fit_budget(label_shares, extinctions);
   const auto value_at = [&](double bin) {
     return std::lerp(histogram.range.min, histogram.range.max,
                      std::clamp(bin / static_cast<double>(shares.size()), 0.0, 1.0));
@@ -166,7 +178,7 @@ TransferFunction make_default_transfer_function(const Histogram& histogram, bool
     const double shell = std::exp(-0.5 * phase * phase / (0.25 * kShellWidth * kShellWidth));
     extinctions[i] = (kBodyShare + shell) * std::pow(density + 0.02, -kRarity);
   }
-  fit_budget(raw, extinctions);
+  extinctions = fit_budget(raw, extinctions);
 
   TransferFunction function;
   function.absorption = Absorption::kOpacity;
