@@ -14,11 +14,11 @@ demo     buckyball         builtin:buckyball?cells=2000000 --transfer-function i
 demo     duct              builtin:duct?cells=300000 --array speed --transfer-function turbo:peaks=12 $above 31
 demo     sphere            builtin:sphere?cells=300000 --transfer-function viridis:peaks=4 --unit-distance 0.07 $ball 27
 gallery  buckyball         builtin:buckyball?cells=2000000 --transfer-function inferno:peaks=4 --range 0.05,1.04 --unit-distance 0.016 $ball 23
-gallery  duct-speed        builtin:duct?cells=300000 --array speed --transfer-function turbo:peaks=12 $above 32
+gallery  duct-speed        builtin:duct?cells=300000 --array speed --transfer-function turbo:peaks=12 $above 33
 gallery  sphere            builtin:sphere?cells=300000 --transfer-function viridis:peaks=4 --unit-distance 0.07 $ball 27
 gallery  buckyball-ramp    builtin:buckyball?cells=2000000 --transfer-function plasma:ramp --range 0.15,1.04 --unit-distance 0.01 $ball 23
 gallery  duct-pressure     builtin:duct?cells=300000 --array pressure --transfer-function coolwarm:peaks=15 --range -1.2,0.548 $beside 3.5
-gallery  duct-volume       builtin:duct --array volume --transfer-function viridis:linear $above 32
+gallery  duct-volume       builtin:duct?cells=6000 --array volume --transfer-function viridis:constant=0.3 --log $above 34
 "
 
 [ $# -eq 3 ] || { echo "usage: tools/draw_pictures.sh demo|gallery TOOL DIRECTORY" >&2; exit 2; }
