@@ -73,7 +73,7 @@ void require_directory(const std::string& path) {
 
 /// Name of the picture, and that it can be written as asked, before any long work.
 std::string choose_output(const RenderOptions& options, const SceneInput& input) {
-  const std::string output = options.output.empty() ? input.name + ".png" : options.output;
+  std::string output = options.output.empty() ? input.name + ".png" : options.output;
   const std::string ending = ending_of(output);
   const bool is_known = ending == ".png" || ending == ".exr" || ending == ".npy";
   if (!is_known) throw UsageError("--output: '" + output + "' does not end in .png, .exr or .npy");
