@@ -73,32 +73,12 @@ void collect_block_files(const pugi::xml_node& node, int depth, const std::strin
   }
 }
 
-/// Cells of an extent "i0 i1 j0 j1 k0 k1"; an axis of one point counts as one.
-std::uint64_t extent_cells(const pugi::xml_attribute& attribute, const std::string& source_name) {
-  const char* at = attribute.value();
-  const char* end = at + std::strlen(at);
-  std::uint64_t cells = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::array<std::int32_t, 2> ends{};
-    for (std::int32_t& value : ends) {
-      while (at != end && *at == ' ') ++at;
-      const auto [next, error] = std::from_chars(at, end, value);
-      if (error != std::errc()) fail(source_name, "an extent is not six whole numbers");
-      at = next;
-    }
-    const std::int64_t length = std::int64_t{ends[1]} - ends[0];
-    if (length < 0 || length > (1 << 20)) fail(source_name, "an extent makes no sense");
-    cells *= static_cast<std::uint64_t>(std::max<std::int64_t>(length, 1));
-  }
-  return cells;
-}
-
 /// Pieces of a structured grid must fill its extent, no more and no less.
 void check_extents(const pugi::xml_node& grid, const std::string& source_name) {
   std::uint64_t cells = 0;
   for (const pugi::xml_node& piece : grid.children("Piece"))
-    cells += extent_cells(piece.attribute("Extent"), source_name);
-  const std::uint64_t whole = extent_cells(grid.attribute("WholeExtent"), source_name);
+    cells += count_extent_cells(piece.attribute("Extent").value(), source_name);
+  const std::uint64_t whole = count_extent_cells(grid.attribute("WholeExtent").value(), source_name);
   if (cells != whole)
     fail(source_name, "its pieces have " + std::to_string(cells) + " cells, and its whole extent " +
                           std::to_string(whole) + ": they overlap or leave gaps");
@@ -155,6 +135,27 @@ FileList parse_file_list(const std::string& text, const std::string& source_name
   }
   if (list.files.empty()) fail(source_name, "no piece is listed");
   return list;
+}
+
+std::uint64_t count_extent_cells(const std::string& extent, const std::string& source_name,
+                                 std::array<std::uint64_t, 3>* points) {
+  const char* at = extent.data();
+  const char* end = at + extent.size();
+  std::uint64_t cells = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::array<std::int32_t, 2> ends{};
+    for (std::int32_t& value : ends) {
+      while (at != end && std::strchr(" \t\r\n", *at)) ++at;
+      const auto [next, error] = std::from_chars(at, end, value);
+      if (error != std::errc()) fail(source_name, "an extent is not six whole numbers");
+      at = next;
+    }
+    const std::int64_t length = std::int64_t{ends[1]} - ends[0];
+    if (length < 0 || length > (1 << 20)) fail(source_name, "an extent makes no sense");
+    cells *= static_cast<std::uint64_t>(std::max<std::int64_t>(length, 1));
+    if (points) (*points)[axis] = static_cast<std::uint64_t>(length) + 1;
+  }
+  return cells;
 }
 
 std::string read_collection_text(const std::string& path) {

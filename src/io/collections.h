@@ -5,7 +5,9 @@
 
 #include "tetravox/scene.h"
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -44,6 +46,12 @@ struct FileList {
 /// Parses the text of a VTM, PVTU, PVTS or PVTR file.
 /// @throws Error (kBadFile) that names `source_name` and the entry.
 FileList parse_file_list(const std::string& text, const std::string& source_name);
+
+/// Cells of an extent, "i0 i1 j0 j1 k0 k1"; an axis of a single point counts as one cell. `points`, if given, receives
+/// the points along each axis.
+/// @throws Error (kBadFile) that names `source_name`.
+std::uint64_t count_extent_cells(const std::string& extent, const std::string& source_name,
+                                 std::array<std::uint64_t, 3>* points = nullptr);
 
 /// The whole file as text.
 /// @throws Error: kFileNotFound, or kBadFile where it exceeds kLargestCollection.

@@ -19,28 +19,6 @@ namespace tetravox::io {
 
 namespace {
 
-/// A file mapped for reading.
-class MappedFile {
- public:
-  explicit MappedFile(const std::string& path) {
-    const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    struct stat status {};
-    if (descriptor >= 0 && fstat(descriptor, &status) == 0 && status.st_size > 0) {
-      void* address = mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
-      if (address != MAP_FAILED) text_ = {static_cast<const char*>(address), static_cast<std::size_t>(status.st_size)};
-    }
-    if (descriptor >= 0) close(descriptor);
-    if (text_.empty()) fail_file(path, "could not be opened");
-  }
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-  ~MappedFile() { munmap(const_cast<char*>(text_.data()), text_.size()); }
-  std::string_view text() const { return text_; }
-
- private:
-  std::string_view text_;
-};
-
 /// Takes big-endian numbers off the header of a netCDF classic file (netCDF Users Guide, "File Format Specification").
 class NetcdfHeader {
  public:
@@ -119,58 +97,20 @@ NetcdfVariable take_variable(NetcdfHeader& header, const std::vector<std::uint64
   return variable;
 }
 
-/// The value of an attribute of an XML tag; empty where it has none.
-std::string_view attribute(std::string_view tag, std::string_view name) {
-  for (std::size_t at = 0; (at = tag.find(name, at)) != std::string_view::npos; at += name.size()) {
-    const std::size_t equals = at + name.size();
-    if (at == 0 || std::string_view(" \t\r\n").find(tag[at - 1]) == std::string_view::npos) continue;
-    if (equals + 1 >= tag.size() || tag[equals] != '=') continue;
-    const char quote = tag[equals + 1];
-    const std::size_t end = tag.find(quote, equals + 2);
-    if (end != std::string_view::npos) return tag.substr(equals + 2, end - equals - 2);
-  }
-  return {};
-}
-
-/// Raw appended data and how its arrays begin.
-struct AppendedData {
-  std::string_view bytes;  ///< between the underscore and the closing tag
-  std::size_t header_size = 4;
-  bool is_big_endian = false;
-  bool is_compressed = false;
-};
-
-std::uint64_t take_number(const AppendedData& data, std::uint64_t at, const std::string& path) {
-  if (at > data.bytes.size() || data.bytes.size() - at < data.header_size)
-    fail_file(path, "an array begins behind the end of the appended data");
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < data.header_size; ++i) {
-    const std::size_t k = data.is_big_endian ? i : data.header_size - 1 - i;
-    value = value << 8 | static_cast<unsigned char>(data.bytes[at + k]);
-  }
-  return value;
-}
-
-void check_array(const AppendedData& data, std::uint64_t offset, const std::string& path) {
-  const auto require = [&](std::uint64_t begin, std::uint64_t bytes) {
-    if (begin > data.bytes.size() || bytes > data.bytes.size() - begin)
-      fail_file(path, "the array at offset " + std::to_string(offset) + " ends behind the end of the appended data");
-  };
-  const std::uint64_t first = take_number(data, offset, path);
-  std::uint64_t begin = offset + data.header_size;
-  if (!data.is_compressed) return require(begin, first);
-  // A compressed array begins with its number of blocks, two sizes, and the compressed size of each block.
-  if (first > data.bytes.size() / data.header_size) fail_file(path, "an array of too many compressed blocks");
-  if (first == 0) return;
-  begin += (2 + first) * data.header_size;
-  for (std::uint64_t block = 0; block < first; ++block) {
-    const std::uint64_t bytes = take_number(data, offset + (3 + block) * data.header_size, path);
-    require(begin, bytes);
-    begin += bytes;
-  }
-}
-
 }  // namespace
+
+MappedFile::MappedFile(const std::string& path) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status {};
+  if (descriptor >= 0 && fstat(descriptor, &status) == 0 && status.st_size > 0) {
+    void* address = mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
+    if (address != MAP_FAILED) text_ = {static_cast<const char*>(address), static_cast<std::size_t>(status.st_size)};
+  }
+  if (descriptor >= 0) close(descriptor);
+  if (text_.empty()) fail_file(path, "could not be opened");
+}
+
+MappedFile::~MappedFile() { munmap(const_cast<char*>(text_.data()), text_.size()); }
 
 void check_netcdf_length(const std::string& path) {
   const MappedFile file(path);
@@ -201,37 +141,6 @@ void check_netcdf_length(const std::string& path) {
     const std::uint64_t before = variable.has_records ? header.checked_product(records - 1, record_bytes) : 0;
     if (variable.begin > NetcdfHeader::kMost || variable.begin + before + variable.bytes > bytes.size())
       fail_file(path, "it is " + std::to_string(bytes.size()) + " bytes long and shorter than its header says");
-  }
-}
-
-void check_appended_data(const std::string& path) {
-  const MappedFile file(path);
-  const std::string_view text = file.text();
-  const std::size_t appended = text.find("<AppendedData");
-  if (appended == std::string_view::npos) return;
-  const std::size_t tag_end = text.find('>', appended);
-  const std::size_t begin = text.find('_', tag_end == std::string_view::npos ? text.size() : tag_end);
-  const std::size_t end = text.rfind("</AppendedData");
-  if (begin == std::string_view::npos || end == std::string_view::npos || end < begin ||
-      text.rfind("</VTKFile") == std::string_view::npos)
-    fail_file(path, "it ends before its appended data does");
-  if (attribute(text.substr(appended, tag_end - appended), "encoding") != "raw") return;
-  AppendedData data;
-  const std::size_t root = text.find("<VTKFile");
-  if (root == std::string_view::npos || root > appended) return;
-  const std::string_view root_tag = text.substr(root, text.find('>', root) - root);
-  data.bytes = text.substr(begin + 1, end - begin - 1);
-  data.header_size = attribute(root_tag, "header_type") == "UInt64" ? 8 : 4;
-  data.is_big_endian = attribute(root_tag, "byte_order") == "BigEndian";
-  data.is_compressed = !attribute(root_tag, "compressor").empty();
-  for (std::size_t at = root; (at = text.find("<DataArray", at)) < appended; ++at) {
-    const std::string_view tag = text.substr(at, text.find('>', at) - at);
-    if (attribute(tag, "format") != "appended") continue;
-    const std::string_view offset_text = attribute(tag, "offset");
-    std::uint64_t offset = 0;
-    const auto error = std::from_chars(offset_text.data(), offset_text.data() + offset_text.size(), offset).ec;
-    if (error != std::errc()) fail_file(path, "an array of the appended data has no offset");
-    check_array(data, offset, path);
   }
 }
 

@@ -3,6 +3,7 @@
 /// Checks of whole files for damage that VTK's readers pass over in silence.
 
 #include <string>
+#include <string_view>
 
 namespace tetravox::io {
 
@@ -11,10 +12,24 @@ namespace tetravox::io {
 /// @throws Error (kBadFile).
 void check_netcdf_length(const std::string& path);
 
-/// Every array in the raw appended data of a VTK XML file ends before that data does, and the file is closed; VTK takes
-/// whatever stands in memory for what is missing. Files without raw appended data pass.
+/// Every array of a VTK XML file (VTU, VTS, VTR) has as many values as its piece says, and its data lie inside the
+/// file; the pieces of a structured grid fill its extent. VTK takes whatever stands in memory for what is missing.
 /// @throws Error (kBadFile).
-void check_appended_data(const std::string& path);
+void check_xml_arrays(const std::string& path);
+
+/// A file mapped for reading.
+class MappedFile {
+ public:
+  /// @throws Error (kBadFile) for a file that cannot be opened or is empty.
+  explicit MappedFile(const std::string& path);
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+  ~MappedFile();
+  std::string_view text() const { return text_; }
+
+ private:
+  std::string_view text_;
+};
 
 /// The whole file in memory.
 /// @throws Error (kBadFile, kFileNotFound).

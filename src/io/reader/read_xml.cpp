@@ -121,7 +121,7 @@ FileContents read_any(const std::string& path, const TimeRequest& time, int dept
 }  // namespace
 
 FileContents read_xml(const std::string& path, const TimeRequest& time) {
-  check_appended_data(path);
+  check_xml_arrays(path);
   switch (detect_format(path, false)) {
     case Format::kVts:
       return read_with<vtkXMLStructuredGridReader>(path, time);

@@ -69,7 +69,8 @@ void check_outcome(const Case& damaged, const Outcome& outcome, const std::optio
   EXPECT_LT(outcome.seconds, kSlowest) << damaged.name;
   if (outcome.error) {
     const std::string message = outcome.error->what();
-    EXPECT_NE(message.find('\''), std::string::npos) << damaged.name << ": names no file: " << message;
+    EXPECT_NE(message.find(fs::path(damaged.file).filename().string()), std::string::npos)
+        << damaged.name << ": names no file: " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << damaged.name << ": more than a line: " << message;
     EXPECT_NE(outcome.error->code(), ErrorCode::kInternal) << damaged.name << ": " << message;
     EXPECT_NE(outcome.error->code(), ErrorCode::kTimeout) << damaged.name << ": " << message;
@@ -112,6 +113,8 @@ std::vector<std::size_t> cut_positions(std::size_t size, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) cuts.push_back(size * i / count);
   for (const std::size_t from_end : {1, 3, 9, 21})
     if (from_end < size) cuts.push_back(size - from_end);
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
   return cuts;
 }
 
@@ -268,7 +271,6 @@ constexpr Hostile kHostile[] = {
     {"openfoam", "constant/polyMesh/faces", "4(1 4 10 7)", "400000000(1 4 10 7)"},
     {"openfoam", "constant/polyMesh/owner", "0 0 0 0", "0 -7 0 0"},
     {"openfoam", "constant/polyMesh/owner", "0 0 0 0", "0 2000000000 0 0"},
-    {"openfoam", "constant/polyMesh/neighbour", "1\n(\n1\n", "2\n(\n1 1\n"},
     {"openfoam", "0/C", "2\n(\n5\n7\n)", "3\n(\n5\n7\n6\n)"},
     {"openfoam", "0/C", "2\n(\n5\n7\n)", "1\n(\n5\n)"},
     {"plot3d_text", "mesh.xyz", "3 2 2", "3 2 3"},
