@@ -52,7 +52,7 @@ struct CompletedScene {
 CompletedScene complete_scene(const Scene& scene, const PreparedMesh& mesh);
 
 /// Histogram of the field over the prepared mesh, in values, weighted by volume; `bins` in [1, 2^20]. Values count as
-/// linear in a cell (point data) or constant (cell data). Meshes above 500,000 cells are sampled evenly. A few outliers
+/// linear in a cell (point data) or constant (cell data). Meshes above 100,000 cells are sampled evenly. A few outliers
 /// that would press everything else into one bin are left to the outermost bins. `unit_distance` follows the mean chord
 /// of the mesh, so that thin bodies are drawn denser. The same on every run, for any number of threads.
 /// @throws Error (kInvalidArgument) for a number of bins out of range.

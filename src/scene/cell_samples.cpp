@@ -59,24 +59,31 @@ CellSample make_sample(const PreparedMesh& mesh, std::uint32_t cell, const std::
   return sample;
 }
 
-/// The flood: a front of cells moves inwards from the boundary, layer by layer.
+/// The flood: a front of cells moves inwards from the boundary. Each part of the front goes depth first for a while,
+/// from neighbour to neighbour, which are near each other in memory; what it has not visited then is the next front.
 class Flood {
  public:
   Flood(const PreparedMesh& mesh, std::size_t stride, std::vector<CellSample>& samples)
       : mesh_(mesh), stride_(stride), samples_(samples), visited_(mesh.cells.size()) {}
 
   void run() {
+    constexpr std::size_t kGrain = 512, kCellsAnEntry = 64;
     std::vector<Entry> front;
     for (const BoundaryFace& face : mesh_.boundary)
       if (face.cell < mesh_.cells.size() && visited_.claim(face.cell)) front.push_back({face.cell, face.vertices});
     while (!front.empty()) {
       std::vector<Entry> next;
       std::mutex next_mutex;
-      support::parallel_chunks(front.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        std::vector<Entry> found;
-        for (std::size_t i = begin; i < end; ++i) visit(front[i], found);
+      support::parallel_chunks(front.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        std::vector<Entry> stack(front.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 front.begin() + static_cast<std::ptrdiff_t>(end));
+        for (std::size_t left = kCellsAnEntry * kGrain; left > 0 && !stack.empty(); --left) {
+          const Entry entry = stack.back();
+          stack.pop_back();
+          visit(entry, stack);
+        }
         const std::lock_guard lock(next_mutex);
-        next.insert(next.end(), found.begin(), found.end());
+        next.insert(next.end(), stack.begin(), stack.end());
       });
       front.swap(next);
     }

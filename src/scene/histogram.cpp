@@ -11,9 +11,9 @@ namespace {
 
 using scene::CellSample;
 
-constexpr std::size_t kLargestSampleCount = 500'000;
+constexpr std::size_t kLargestSampleCount = 100'000;
 constexpr int kLargestBinCount = 1 << 20;
-constexpr int kStepsAcrossBox = 16;
+constexpr int kStepsAcrossBox = 8;
 constexpr double kTail = 1e-3;        // part of the volume at either end that may be an outlier
 constexpr double kOutlierRatio = 20;  // outliers are cut off when they make the range this much wider
 
@@ -25,14 +25,13 @@ void add_cell(const CellSample& cell, double min, double max, std::vector<double
   const double sum = static_cast<double>(cell.scalars[0]) + cell.scalars[1] + cell.scalars[2] + cell.scalars[3];
   const double half_width = 0.125 * (high - low);
   const int steps = std::clamp(static_cast<int>(std::ceil(2.0 * half_width * bins_per_value)), 1, kStepsAcrossBox);
+  const double weight = 0.25 * cell.volume / steps, last = static_cast<double>(counts.size()) - 1.0;
   for (const float scalar : cell.scalars) {
     const double middle = 0.1381966011250105 * sum + 0.4472135954999579 * scalar;
     const double begin = std::max(low, middle - half_width), end = std::min(high, middle + half_width);
-    for (int i = 0; i < steps; ++i) {
-      const double position = (std::lerp(begin, end, (i + 0.5) / steps) - min) * bins_per_value;
-      const double bin = std::clamp(std::floor(position), 0.0, static_cast<double>(counts.size()) - 1.0);
-      counts[static_cast<std::size_t>(bin)] += 0.25 * cell.volume / steps;
-    }
+    const double first = (begin - min) * bins_per_value, stride = (end - begin) * bins_per_value / steps;
+    for (int i = 0; i < steps; ++i)
+      counts[static_cast<std::size_t>(std::clamp(first + (i + 0.5) * stride, 0.0, last))] += weight;
   }
 }
 
@@ -101,19 +100,13 @@ Histogram make_histogram(const PreparedMesh& mesh, int bins) {
   histogram.range = mesh.scalar_range;
   histogram.counts.resize(static_cast<std::size_t>(bins));
   const std::vector<CellSample> samples = scene::sample_cells(mesh, kLargestSampleCount);
-  ValueRange range{HUGE_VAL, -HUGE_VAL};
   double volume = 0.0;
-  for (const CellSample& sample : samples) {
-    if (!(sample.volume > 0.0f)) continue;
-    volume += sample.volume;
-    for (const float scalar : sample.scalars) {
-      range.min = std::min<double>(range.min, scalar);
-      range.max = std::max<double>(range.max, scalar);
-    }
-  }
+  for (const CellSample& sample : samples) volume += sample.volume;
   const double stride =
       static_cast<double>(mesh.cells.size()) / static_cast<double>(std::max<std::size_t>(1, samples.size()));
   histogram.unit_distance = suitable_unit_distance(mesh, volume * stride);
+  ValueRange range{(mesh.scalar_range.min - mesh.scalar_offset) / mesh.scalar_scale,
+                   (mesh.scalar_range.max - mesh.scalar_offset) / mesh.scalar_scale};
   if (!(range.max > range.min)) {
     histogram.counts[histogram.counts.size() / 2] = volume > 0.0 ? volume : 1.0;
     return histogram;

@@ -37,6 +37,9 @@ PreparedMesh make_mesh(const std::vector<Vertex>& vertices, const std::vector<Id
     mesh.cells[sides[1].first].neighbours[static_cast<std::size_t>(sides[1].second)] = sides[0].first;
   }
   mesh.bounds = {{{-1, 1}, {-1, 1}, {-1, 1}}};
+  const auto [min, max] = std::minmax_element(vertices.begin(), vertices.end(),
+                                              [](const Vertex& a, const Vertex& b) { return a.scalar < b.scalar; });
+  mesh.scalar_range = {min->scalar, max->scalar};
   return mesh;
 }
 
@@ -97,6 +100,7 @@ TEST(Histogram, WeighsByVolumeAndNotByCells) {
 TEST(Histogram, OfCellDataCountsCellsValues) {
   PreparedMesh mesh = make_cube(4, [](float, float, float) { return 0.0f; });
   mesh.association = Association::kCell;
+  mesh.scalar_range = {0, 1};
   for (std::size_t i = 0; i < mesh.cells.size(); ++i) mesh.cell_scalars.push_back(i % 4 == 0 ? 1.0f : 0.0f);
   const Histogram histogram = make_histogram(mesh, 16);
   EXPECT_NEAR(histogram.counts.front(), 6.0, 1e-5);
