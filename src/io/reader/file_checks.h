@@ -17,6 +17,11 @@ void check_netcdf_length(const std::string& path);
 /// @throws Error (kBadFile).
 void check_xml_arrays(const std::string& path);
 
+/// The files of an EnSight case hold all values they promise at a time. Files with Fortran records and files with
+/// several steps in one pass unseen.
+/// @throws Error (kBadFile).
+void check_ensight_files(const std::string& path, double time);
+
 /// A file mapped for reading.
 class MappedFile {
  public:

@@ -78,6 +78,7 @@ FileContents read_ensight(const std::string& path, const TimeRequest& time) {
   reader->ReadAllVariablesOn();
   FileContents contents;
   update_reader(*reader, path, time, contents);
+  check_ensight_files(path, contents.times.empty() ? 0.0 : contents.times[contents.time_index]);
   append_blocks(reader->GetOutputDataObject(0), contents);
   return contents;
 }
