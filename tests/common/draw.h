@@ -4,6 +4,16 @@
 
 #include "tetravox/render.h"
 
+#include <ostream>
+
+namespace tetravox {
+
+/// How test parameters are written.
+inline void PrintTo(CellType type, std::ostream* out) { *out << cell_type_name(static_cast<std::uint8_t>(type)); }
+inline void PrintTo(Integrator integrator, std::ostream* out) { *out << name_of(integrator); }
+
+}  // namespace tetravox
+
 namespace tetravox::tests {
 
 inline RenderSettings make_settings(Integrator integrator, int width, int height) {

@@ -57,7 +57,8 @@ TEST_P(Product, AllInstructionSetsGiveTheSameBytes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Data, Product, ::testing::Values("sphere", "buckyball?cells=20000", "duct", "cell_data"),
+INSTANTIATE_TEST_SUITE_P(Data, Product,
+                         ::testing::Values("sphere", "buckyball?cells=20000", "duct?cells=4000", "cell_data"),
                          [](const auto& test) {
                            const std::string name = test.param;
                            return name.substr(0, name.find('?'));
