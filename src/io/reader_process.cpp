@@ -155,9 +155,10 @@ void take_line(std::string_view line, Conversation& conversation, const Progress
     conversation.complaint = clean_line(std::string(line.substr(10)), 300);
   } else if (line.starts_with("error ") && !conversation.error) {
     int code = 0;
-    const auto end = std::from_chars(line.data() + 6, line.data() + line.size(), code).ptr;
-    std::string text(end, line.data() + line.size());
-    if (code < 0 || code > static_cast<int>(ErrorCode::kInternal)) code = static_cast<int>(ErrorCode::kReaderFailed);
+    const auto [end, failure] = std::from_chars(line.data() + 6, line.data() + line.size(), code);
+    const std::string text(end, line.data() + line.size());
+    if (failure != std::errc() || code < 0 || code > static_cast<int>(ErrorCode::kInternal))
+      code = static_cast<int>(ErrorCode::kReaderFailed);
     conversation.error.emplace(static_cast<ErrorCode>(code), clean_line(text));
   }
 }
