@@ -88,9 +88,20 @@ double mean_depth(const std::vector<double>& shares, const std::vector<double>& 
   return kRayLength * mean;
 }
 
-/// Scales extinctions to the budget of optical depth. Rare values may be nearly solid. The most frequent ones stay
-/// below `body`, which is raised only as far as it takes to see something at all.
-std::vector<double> fit_budget(const std::vector<double>& shares, const std::vector<double>& extinctions) {
+/// The largest share of each bin and its two neighbours: a value at the edge of a bin is drawn with both.
+std::vector<double> widened(const std::vector<double>& shares) {
+  std::vector<double> result = shares;
+  for (std::size_t i = 0; i + 1 < shares.size(); ++i) {
+    result[i] = std::max(result[i], shares[i + 1]);
+    result[i + 1] = std::max(result[i + 1], shares[i]);
+  }
+  return result;
+}
+
+/// Scales extinctions to the budget of optical depth. Rare values may be nearly solid. The most frequent ones, by
+/// `crowds`, stay below `body`, which is raised only as far as it takes to see something at all.
+std::vector<double> fit_budget(const std::vector<double>& shares, const std::vector<double>& crowds,
+                               const std::vector<double>& extinctions) {
   std::vector<double> fitted;
   for (double body = kThinnestBody; body <= kBodyExtinction; body *= 1.25) {
     fitted = extinctions;
@@ -98,7 +109,7 @@ std::vector<double> fit_budget(const std::vector<double>& shares, const std::vec
       const double depth = mean_depth(shares, fitted);
       if (!(depth > 0.0)) break;
       for (std::size_t i = 0; i < shares.size(); ++i) {
-        const double density = shares[i] * static_cast<double>(shares.size());
+        const double density = crowds[i] * static_cast<double>(crowds.size());
         fitted[i] = std::min(fitted[i] * kOpticalDepth / depth, body + kSolidExtinction / std::max(1.0, density));
       }
     }
@@ -123,7 +134,7 @@ TransferFunction label_function(const Histogram& histogram, const std::vector<do
     label_shares.push_back(shares[bin]);
     extinctions.push_back(std::pow(shares[bin] + 1e-4, -kRarity));
   }
-  extinctions = fit_budget(label_shares, extinctions);
+  extinctions = fit_budget(label_shares, label_shares, extinctions);
   const auto value_at = [&](double bin) {
     return std::lerp(histogram.range.min, histogram.range.max,
                      std::clamp(bin / static_cast<double>(shares.size()), 0.0, 1.0));
@@ -178,7 +189,7 @@ TransferFunction make_default_transfer_function(const Histogram& histogram, bool
     const double shell = std::exp(-0.5 * phase * phase / (0.25 * kShellWidth * kShellWidth));
     extinctions[i] = (kBodyShare + shell) * std::pow(density + 0.02, -kRarity);
   }
-  extinctions = fit_budget(raw, extinctions);
+  extinctions = fit_budget(raw, widened(raw), extinctions);
 
   TransferFunction function;
   function.absorption = Absorption::kOpacity;

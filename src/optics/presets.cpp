@@ -47,7 +47,7 @@ using optics::ColorMapPoint;
 constexpr double kRampOpacity = 0.3;
 constexpr double kPeakOpacity = 0.3;
 constexpr double kConstantOpacity = 0.02;
-constexpr double kRandomOpacity = 0.35;
+constexpr double kRandomOpacity = 0.15;
 constexpr int kDefaultPeakCount = 5;
 constexpr int kLargestPeakCount = 100;
 constexpr int kRandomPointCount = 64;

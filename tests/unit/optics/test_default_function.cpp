@@ -60,6 +60,13 @@ TEST(DefaultFunction, IsThinForFrequentValuesAndStandsOutForRareOnes) {
   EXPECT_GT(rare, 10.0 * eval_optical_function(optical, 0.005).extinction);
 }
 
+TEST(DefaultFunction, KeepsABackgroundThinWhereverItLiesInItsBin) {
+  Histogram histogram{{0, 1}, std::vector<double>(512, 1e-4)};
+  histogram.counts[200] = 1.0;
+  const OpticalFunction optical = make_optical_function(make_default_transfer_function(histogram), 1.0);
+  for (int i = 0; i <= 16; ++i) EXPECT_LT(58 * eval_optical_function(optical, (200 + i / 16.0) / 512).extinction, 1.8);
+}
+
 TEST(DefaultFunction, DrawsAConstantField) {
   const Histogram histogram{{5, 5}, {0, 3, 0}};
   const TransferFunction function = make_default_transfer_function(histogram);
