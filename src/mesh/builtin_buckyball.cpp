@@ -76,7 +76,8 @@ BuiltinStorage make_buckyball_mesh(std::uint64_t cells) {
 
 void fill_buckyball_scalars(BuiltinStorage& storage) {
   // A Gaussian is a product of one for each axis: tabulate those, [atoms][lattice].
-  const std::size_t row = std::lround(std::cbrt(static_cast<double>(storage.points.size() / 3)));
+  const std::size_t points = storage.points.size() / 3;
+  const std::size_t row = std::lround(std::cbrt(static_cast<double>(points)));
   const std::vector<std::array<double, 3>> atoms = atom_positions();
   std::array<std::vector<double>, 3> factor;
   for (int axis = 0; axis < 3; ++axis)
