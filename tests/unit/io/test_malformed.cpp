@@ -177,6 +177,61 @@ TEST_P(Malformed, FlippedBitsGiveAnErrorOrAValidMesh) {
 INSTANTIATE_TEST_SUITE_P(All, Malformed, testing::ValuesIn(test::samples()),
                          [](const auto& instance) { return instance.param.name; });
 
+/// Formats that are too intricate to write here: public files, where they are.
+class MalformedPublic : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    const fs::path file = fs::path(TETRAVOX_SHARED_DIR) / "data" / GetParam();
+    if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
+    fs::create_directories(directory_.path() / "whole");
+    text_ = test::read_text(file.string());
+    sample_.name = sample_.main_file = GetParam();
+    test::write_text(directory_.path() / "whole" / GetParam(), text_);
+  }
+  Case damage(const std::string& name, const std::string& content) {
+    return make_case(sample_, directory_.path() / "whole", directory_.path(), name, GetParam(), content);
+  }
+
+  TemporaryDirectory directory_;
+  Sample sample_;
+  std::string text_;
+};
+
+TEST_P(MalformedPublic, TruncatedFilesNeverGiveAPartialMesh) {
+  Case undamaged;
+  undamaged.file = (directory_.path() / "whole" / GetParam()).string();
+  const Outcome whole = read_case(undamaged);
+  ASSERT_TRUE(whole.dataset);
+  std::vector<Case> cases;
+  for (const std::size_t cut : cut_positions(text_.size(), 10)) {
+    cases.push_back(damage("cut-" + std::to_string(cut), text_.substr(0, cut)));
+    cases.back().must_fail_or_equal = true;
+  }
+  check_all(cases, whole.dataset);
+}
+
+TEST_P(MalformedPublic, FlippedBitsGiveAnErrorOrAValidMesh) {
+  std::mt19937 random(20240502);
+  std::vector<Case> cases;
+  for (int i = 0; i < 24; ++i) {
+    std::string damaged = text_;
+    // Half of them in the beginning, where the structure is.
+    const std::size_t reach = i % 2 == 0 ? std::min<std::size_t>(4096, text_.size()) : text_.size();
+    for (int k = 0; k < 8; ++k) damaged[random() % reach] ^= static_cast<char>(1 << random() % 8);
+    cases.push_back(damage("flip-" + std::to_string(i), damaged));
+  }
+  check_all(cases, std::nullopt);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MalformedPublic,
+                         testing::Values("disk_out_ref.ex2", "sqnz_s.adf.cgns", "can.vtu", "bluntfin.vts",
+                                         "notch_stress_fixed.vtk"),
+                         [](const auto& instance) {
+                           std::string name = instance.param;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name;
+                         });
+
 /// A replacement in a text sample that must end in an error.
 struct Hostile {
   const char* sample;
