@@ -12,7 +12,9 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <array>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -45,7 +47,11 @@ void validate_settings(const RenderSettings& settings) {
   if (settings.threads < 0 || settings.threads > 4096) fail("threads must be between 0 (all cores) and 4096");
 }
 
-auto choose_walk(const cpu::Kernels& kernels, Association association, Integrator integrator) {
+double diagonal(const std::array<ValueRange, 3>& bounds) {
+  return std::hypot(bounds[0].max - bounds[0].min, bounds[1].max - bounds[1].min, bounds[2].max - bounds[2].min);
+}
+
+auto choose_walk(const cpu::Kernels& kernels, Association association, Integrator integrator, bool is_gentle) {
   if (association == Association::kCell) return kernels.walk_cells;
   switch (integrator) {
     case Integrator::kPartial:
@@ -55,7 +61,7 @@ auto choose_walk(const cpu::Kernels& kernels, Association association, Integrato
     case Integrator::kAntiderivative:
       break;
   }
-  return kernels.walk_antiderivative;
+  return is_gentle ? kernels.walk_gentle_antiderivative : kernels.walk_antiderivative;
 }
 
 /// Calls `report` with the part done, from one thread at a time.
@@ -132,7 +138,8 @@ void Renderer::set_transfer_function(const OpticalFunction& function) {
   const optics::ScalarMap map{state_->mesh.scalar_offset, state_->mesh.scalar_scale};
   state_->control_points = optics::build_control_point_table(function, map);
   if (state_->mesh.association == Association::kPoint)
-    state_->antiderivative = optics::build_antiderivative_table(function, map, state_->mesh.scalar_range);
+    optics::build_antiderivative_table(function, map, state_->mesh.scalar_range, diagonal(state_->mesh.bounds),
+                                       state_->antiderivative);
   state_->has_function = true;
 }
 
@@ -160,7 +167,7 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
         &state_->antiderivative, &state_->control_points,
         settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,
         static_cast<float>(settings.tolerance), settings.samples};
-    const auto walk = choose_walk(kernels, mesh.association, settings.integrator);
+    const auto walk = choose_walk(kernels, mesh.association, settings.integrator, state_->antiderivative.is_gentle);
     tbb::enumerable_thread_specific<cpu::TileScratch> scratches;
     TileProgress tile_progress(progress, frame.bins.tile_count());
     support::parallel_chunks(frame.bins.tile_count(), 1, [&](std::size_t begin, std::size_t end) {

@@ -4,15 +4,17 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace tetravox::optics {
 namespace {
 
 /// Nodes that the narrowest piece of the function gets at least, and the bounds of the table's size.
 constexpr double kNodesPerPiece = 128.0;
+constexpr std::int32_t kGentleNodes = 16384;
 constexpr std::int32_t kFewestNodes = 2048;
 constexpr std::int32_t kMostNodes = 16384;
-/// T at the last node, as an integer.
+/// T at the last node, as an integer: half of what fits, since densities at the ends may be rounded up.
 constexpr double kFullScale = 1 << 30;
 
 using Density = std::array<double, 4>;  // rho, rho*red, rho*green, rho*blue
@@ -70,16 +72,20 @@ std::vector<Piece> make_pieces(const OpticalFunction& function) {
   return pieces;
 }
 
-/// The interval of values that the nodes cover: where both the function varies and the data lie.
+/// The interval of values that the nodes cover: where the function varies and the data lie, and as much of the data
+/// beyond the function's ends as costs little (there the function is constant, which takes a slower path).
 ValueRange table_range(const OpticalFunction& function, const ScalarMap& map, const ValueRange& range) {
-  ValueRange covered{std::max(function.points.front().value, range.min),
-                     std::min(function.points.back().value, range.max)};
-  if (!(covered.max > covered.min)) {  // constant data, a constant function, or no overlap: any interval serves
-    const double middle = std::clamp(range.min, function.points.front().value, function.points.back().value);
-    const double half = std::max({std::abs(middle) * 1e-6, std::abs(map.scale) * 1e-6, 1e-300});
-    covered = {middle - half, middle + half};
+  const double first = function.points.front().value, last = function.points.back().value;
+  const double margin = last - first;
+  ValueRange covered{std::max(first - margin, range.min), std::min(last + margin, range.max)};
+  if (covered.max > covered.min) {
+    const double rounding = 1e-5 * (covered.max - covered.min);
+    return {covered.min - rounding, covered.max + rounding};
   }
-  return covered;
+  // Constant data, a constant function, or no overlap: any interval serves.
+  const double middle = std::clamp(range.min, first, last);
+  const double half = std::max({std::abs(middle) * 1e-6, std::abs(map.scale) * 1e-6, 1e-300});
+  return {middle - half, middle + half};
 }
 
 std::int32_t choose_node_count(const OpticalFunction& function, const ValueRange& covered) {
@@ -97,50 +103,112 @@ std::int32_t choose_node_count(const OpticalFunction& function, const ValueRange
   return nodes;
 }
 
-/// Exact integrals over each of `count` equal bins.
-std::vector<Density> integrate_bins(const std::vector<Piece>& pieces, const ValueRange& covered, std::int32_t count) {
-  std::vector<Density> bins(count);
-  const double width = (covered.max - covered.min) / count;
-  std::size_t piece = 0;
-  double begin = covered.min;
-  for (std::int32_t i = 0; i < count; ++i) {
-    const double end = covered.min + width * (i + 1);
-    Density sum{};
-    while (piece + 1 < pieces.size() && pieces[piece].end <= end) {
-      if (pieces[piece].end > begin) {
-        pieces[piece].accumulate(begin, pieces[piece].end, sum);
-        begin = pieces[piece].end;
-      }
-      ++piece;
-    }
-    if (end > begin) pieces[piece].accumulate(begin, end, sum);
-    begin = end;
-    bins[i] = sum;
+/// Whether scalars may be off by half of `kFlatNodes` of `kGentleNodes` nodes.
+///
+/// A stretch of length L at extinction rho whose scalar is off by ds changes the picture by rho' ds L exp(-rho L): at
+/// most rho' ds / (e rho), reached at L = 1 / rho.
+bool is_gentle_function(const OpticalFunction& function, const ValueRange& covered, double longest) {
+  const double error = 0.5 * AntiderivativeTable::kFlatNodes * (covered.max - covered.min) / kGentleNodes;
+  for (std::size_t i = 0; i + 1 < function.points.size(); ++i) {
+    const OpticalPoint& a = function.points[i];
+    const OpticalPoint& b = function.points[i + 1];
+    if (a.value == b.value && (a.extinction != b.extinction || a.color != b.color)) return false;
+    if (a.value == b.value || b.value < covered.min || a.value > covered.max) continue;
+    const double width = b.value - a.value;
+    const double slope = std::abs(b.extinction - a.extinction) / width;
+    const double thinnest = std::max(std::min(a.extinction, b.extinction), 1.0 / longest);
+    double color_change = 0.0;
+    for (int channel = 0; channel < 3; ++channel)
+      color_change = std::max(color_change, std::abs(b.color[channel] - a.color[channel]));
+    if (slope * error / (std::numbers::e * thinnest) > AntiderivativeTable::kGentleError) return false;
+    if (color_change / width * error > AntiderivativeTable::kGentleError) return false;
   }
-  return bins;
+  return true;
 }
 
+/// Exact integrals over consecutive intervals.
+class BinIntegrals {
+ public:
+  BinIntegrals(const OpticalFunction& function, double begin) : pieces_(make_pieces(function)), begin_(begin) {}
+
+  /// The integrals from where the last interval ended to `end`.
+  Density next(double end) {
+    Density sum{};
+    while (piece_ + 1 < pieces_.size() && pieces_[piece_].end <= end) {
+      if (pieces_[piece_].end > begin_) {
+        pieces_[piece_].accumulate(begin_, pieces_[piece_].end, sum);
+        begin_ = pieces_[piece_].end;
+      }
+      ++piece_;
+    }
+    if (end > begin_) pieces_[piece_].accumulate(begin_, end, sum);
+    begin_ = end;
+    return sum;
+  }
+
+ private:
+  std::vector<Piece> pieces_;
+  std::size_t piece_ = 0;
+  double begin_;
+};
+
 /// Total variation of the visible colour, largest channel; invisible stretches count when colour is next seen.
-void fill_color_variation(const std::vector<Density>& bins, AntiderivativeTable& table) {
-  table.color_variation.resize(bins.size() + 1);
-  std::array<double, 3> last{};
-  bool seen = false;
-  double total = 0.0, largest = 0.0;
-  for (std::size_t i = 0; i < bins.size(); ++i) {
-    table.color_variation[i] = static_cast<float>(total);
-    if (!(bins[i][0] > 0.0)) continue;
+class ColorVariation {
+ public:
+  void add(const Density& bin) {
+    if (!(bin[0] > 0.0)) return;
+    const double inverse = 1.0 / bin[0];
     double change = 0.0;
     for (int channel = 0; channel < 3; ++channel) {
-      const double color = bins[i][channel + 1] / bins[i][0];
-      if (seen) change = std::max(change, std::abs(color - last[channel]));
-      last[channel] = color;
+      const double color = bin[channel + 1] * inverse;
+      if (seen_) change = std::max(change, std::abs(color - last_[channel]));
+      last_[channel] = color;
     }
-    seen = true;
-    total += change;
-    largest = std::max(largest, change);
+    seen_ = true;
+    total_ += change;
+    largest_ = std::max(largest_, change);
   }
-  table.color_variation.back() = static_cast<float>(total);
-  table.largest_color_slope = static_cast<float>(largest);
+  float total() const { return static_cast<float>(total_); }
+  float largest() const { return static_cast<float>(largest_); }
+
+ private:
+  std::array<double, 3> last_{};
+  bool seen_ = false;
+  double total_ = 0.0, largest_ = 0.0;
+};
+
+/// Fills nodes and colour variation. The density at a node is the mean over the two bins beside it, and linear between
+/// nodes; the sums are the integrals of just that.
+void fill_nodes(const OpticalFunction& function, const ValueRange& covered, AntiderivativeTable& table) {
+  const std::int32_t count = table.last_node;
+  const double width = (covered.max - covered.min) / count;
+  const double total = BinIntegrals(function, covered.min).next(covered.max)[0] / width;
+  const double unit = total > 0.0 ? total / kFullScale : 1.0;
+  table.density_per_unit = static_cast<float>(unit);
+  table.units_per_density = static_cast<float>(1.0 / unit);
+  table.entries.resize(static_cast<std::size_t>(count) + 1);
+  table.color_variation.resize(static_cast<std::size_t>(count) + 1);
+
+  BinIntegrals bins(function, covered.min);
+  ColorVariation variation;
+  const double mean_scale = 0.5 / width, sum_scale = 0.5 / unit;
+  Density bin = bins.next(covered.min + width), density{}, sum{};
+  for (int channel = 0; channel < 4; ++channel) density[channel] = 2.0 * mean_scale * bin[channel];
+  for (std::int32_t i = 0; i <= count; ++i) {
+    AntiderivativeTable::Node& node = table.entries[i];
+    table.color_variation[i] = variation.total();
+    variation.add(bin);
+    const Density next_bin = i + 2 <= count ? bins.next(covered.min + width * (i + 2)) : bin;
+    for (int channel = 0; channel < 4; ++channel) {
+      node.sums[channel] = static_cast<std::int32_t>(sum[channel] + 0.5);
+      node.densities[channel] = static_cast<float>(density[channel]);
+      const double next_density = mean_scale * (bin[channel] + next_bin[channel]);
+      sum[channel] += sum_scale * (density[channel] + next_density);
+      density[channel] = next_density;
+    }
+    bin = next_bin;
+  }
+  table.largest_color_slope = variation.largest();
 }
 
 /// Counts the steps below every node.
@@ -153,6 +221,7 @@ void count_steps(const OpticalFunction& function, const ValueRange& covered, Ant
     if (a.value == b.value && inside && (a.extinction != b.extinction || a.color != b.color)) steps.push_back(a.value);
   }
   table.has_steps = !steps.empty();
+  table.steps_before.clear();
   if (!table.has_steps) return;
   table.steps_before.resize(static_cast<std::size_t>(table.last_node) + 1);
   const double width = (covered.max - covered.min) / table.last_node;
@@ -165,42 +234,16 @@ void count_steps(const OpticalFunction& function, const ValueRange& covered, Ant
 
 }  // namespace
 
-AntiderivativeTable build_antiderivative_table(const OpticalFunction& function, const ScalarMap& map,
-                                               const ValueRange& range) {
+void build_antiderivative_table(const OpticalFunction& function, const ScalarMap& map, const ValueRange& range,
+                                double longest, AntiderivativeTable& table) {
   const ValueRange covered = table_range(function, map, range);
-  const std::int32_t count = choose_node_count(function, covered);
-  const std::vector<Density> bins = integrate_bins(make_pieces(function), covered, count);
-
-  AntiderivativeTable table;
-  table.last_node = count;
+  table.is_gentle = is_gentle_function(function, covered, longest);
+  table.last_node = table.is_gentle ? kGentleNodes : choose_node_count(function, covered);
   table.first = map.stored_from_value(covered.min);
-  const double width = (covered.max - covered.min) / count;
-  table.nodes_per_scalar = static_cast<float>(map.scale / width);
-  fill_color_variation(bins, table);
+  table.nodes_per_scalar = static_cast<float>(map.scale * table.last_node / (covered.max - covered.min));
+  fill_nodes(function, covered, table);
   count_steps(function, covered, table);
 
-  // The density at a node is the mean over the halves of its two bins; the sums are the integrals of those, linear in
-  // between.
-  const double inverse_width = 1.0 / width;
-  const auto density_at = [&](std::int32_t node, int channel) {
-    return 0.5 * (bins[std::max(node - 1, 0)][channel] + bins[std::min(node, count - 1)][channel]) * inverse_width;
-  };
-  double total = 0.0;
-  for (std::int32_t i = 0; i < count; ++i) total += 0.5 * (density_at(i, 0) + density_at(i + 1, 0));
-  const double unit = total > 0.0 ? total / kFullScale : 1.0;
-  table.density_per_unit = static_cast<float>(unit);
-  table.units_per_density = static_cast<float>(1.0 / unit);
-  table.entries.resize(static_cast<std::size_t>(count) + 1);
-  for (int channel = 0; channel < 4; ++channel) {
-    double sum = 0.0, density = density_at(0, channel);
-    for (std::int32_t i = 0; i <= count; ++i) {
-      table.entries[i].sums[channel] = static_cast<std::int32_t>(sum + 0.5);
-      table.entries[i].densities[channel] = static_cast<float>(density);
-      const double next = density_at(std::min(i + 1, count), channel);
-      sum += 0.5 * (density + next) / unit;
-      density = next;
-    }
-  }
   const bool starts_here = covered.min <= function.points.front().value;
   const Density below =
       density_of(starts_here ? function.points.front() : eval_optical_function(function, covered.min));
@@ -209,7 +252,6 @@ AntiderivativeTable build_antiderivative_table(const OpticalFunction& function, 
     table.density_below[channel] = static_cast<float>(below[channel]);
     table.density_above[channel] = static_cast<float>(above[channel]);
   }
-  return table;
 }
 
 ControlPointTable build_control_point_table(const OpticalFunction& function, const ScalarMap& map) {

@@ -43,6 +43,11 @@ struct AntiderivativeTable {
   std::vector<std::int32_t>
       steps_before;  ///< [last_node + 1]: steps of the function below the node; empty without steps
   bool has_steps = false;
+  /// Whether scalars may be rounded to nodes, and segments no longer than kFlatNodes read one density, without the
+  /// picture changing by more than `kGentleError`.
+  bool is_gentle = false;
+  static constexpr std::int32_t kFlatNodes = 4;
+  static constexpr double kGentleError = 1e-3;
   float first = 0.0f;                ///< stored scalar at node 0
   float nodes_per_scalar = 1.0f;     ///< position in nodes = (stored - first) * nodes_per_scalar
   float density_per_unit = 1.0f;     ///< mean density = density_per_unit * difference of sums / difference of positions
@@ -52,9 +57,11 @@ struct AntiderivativeTable {
   std::array<float, 4> density_above{};  ///< ... and after the last node
 };
 
-/// The table of `function` over the part of `range` (values) where it varies; one pass, well under a millisecond.
-AntiderivativeTable build_antiderivative_table(const OpticalFunction& function, const ScalarMap& map,
-                                               const ValueRange& range);
+/// Makes `table` that of `function` over the part of `range` (values) where it varies: one pass, well under a
+/// millisecond; memory of an earlier table is used again. `longest`: world length of the longest ray (the diagonal of
+/// the bounds).
+void build_antiderivative_table(const OpticalFunction& function, const ScalarMap& map, const ValueRange& range,
+                                double longest, AntiderivativeTable& table);
 
 /// The control points themselves, for exact evaluation: with an index that finds the interval of a scalar in a step or
 /// two.

@@ -15,6 +15,8 @@
 // After foreach_target.h
 #include <hwy/highway.h>
 
+#include "src/cpu/kernels/antiderivative-inl.h"
+#include "src/cpu/kernels/integrators-inl.h"
 #include "src/cpu/kernels/rasterize-inl.h"
 #include "src/cpu/kernels/walk-inl.h"
 
@@ -31,6 +33,7 @@ Kernels make_kernels() {
   Kernels kernels;
   kernels.rasterize_face = &rasterize_face;
   kernels.walk_antiderivative = &walk<AntiderivativeIntegrator, false>;
+  kernels.walk_gentle_antiderivative = &walk<GentleAntiderivativeIntegrator, false>;
   kernels.walk_partial = &walk<PartialIntegrator, false>;
   kernels.walk_post = &walk<PostIntegrator, false>;
   kernels.walk_cells = &walk<CellIntegrator, true>;

@@ -100,6 +100,7 @@ struct Kernels {
   void (*rasterize_face)(const FrameMesh& mesh, const RayGrid& rays, const BinnedFace& face, int tile_column,
                          int tile_row, std::vector<FaceHit>& hits) = nullptr;
   WalkStatistics (*walk_antiderivative)(const WalkJob& job) = nullptr;
+  WalkStatistics (*walk_gentle_antiderivative)(const WalkJob& job) = nullptr;  ///< for `AntiderivativeTable::is_gentle`
   WalkStatistics (*walk_partial)(const WalkJob& job) = nullptr;
   WalkStatistics (*walk_post)(const WalkJob& job) = nullptr;
   WalkStatistics (*walk_cells)(const WalkJob& job) = nullptr;  ///< cell data, exact with every integrator

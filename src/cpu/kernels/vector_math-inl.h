@@ -59,10 +59,12 @@ HWY_INLINE hn::Vec<Tag> load_blocks(Tag tag, const FindRecord& record, std::size
 }
 #endif
 
-/// Loads the 16-byte record `base[index]` of each lane. Sixteen-byte loads and a transposition beat hardware gathers.
-HWY_INLINE Record load_records(const float* HWY_RESTRICT base, Uint index) {
+/// Loads the 16-byte record `records[index]` of each lane. Sixteen-byte loads and a transposition beat hardware
+/// gathers.
+HWY_INLINE Record load_records(const void* records, Uint index) {
   HWY_ALIGN std::uint32_t lane[kLanes];
   hn::Store(index, kUint, lane);
+  const float* base = static_cast<const float*>(records);
   const auto record = [&](std::size_t i) { return base + 4 * static_cast<std::size_t>(lane[i]); };
 #if HWY_TARGET == HWY_SCALAR
   const float* r = record(0);
@@ -77,17 +79,6 @@ HWY_INLINE Record load_records(const float* HWY_RESTRICT base, Uint index) {
   return {hn::InterleaveLower(kFloat, xy_even, xy_odd), hn::InterleaveUpper(kFloat, xy_even, xy_odd),
           hn::InterleaveLower(kFloat, zw_even, zw_odd), hn::InterleaveUpper(kFloat, zw_even, zw_odd)};
 #endif
-}
-
-/// Loads the first half of `nodes[index]` and the second halves of it and of its successor, for each lane.
-template <class Node>
-HWY_INLINE void load_neighbours(const Node* nodes, Uint index, Record& first, Record& low, Record& high) {
-  static_assert(sizeof(Node) == 32);
-  const float* base = reinterpret_cast<const float*>(nodes);
-  const Uint doubled = hn::Add(index, index);
-  first = load_records(base, doubled);
-  low = load_records(base + 4, doubled);
-  high = load_records(base + 12, doubled);
 }
 
 /// (1 - exp(-x)) / x for 0 <= x <= 1/4, to 2e-6: the series.

@@ -7,8 +7,8 @@
 #define TETRAVOX_CPU_WALK_INL
 #endif
 
-#include "src/cpu/kernels/integrators-inl.h"
 #include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 
 #include <algorithm>
@@ -33,6 +33,7 @@ struct Lanes {
   HWY_ALIGN float weight[3][kLanes];
   HWY_ALIGN std::uint32_t cell[kLanes];
   HWY_ALIGN float z_front[kLanes], scalar_front[kLanes];
+  HWY_ALIGN std::int32_t front_node[kLanes];  ///< what the integrator keeps of the front; -1: nothing yet
   HWY_ALIGN float red[kLanes], green[kLanes], blue[kLanes], transmittance[kLanes];
   HWY_ALIGN float x_offset[kLanes], x_slope[kLanes], y_offset[kLanes], y_slope[kLanes];
   HWY_ALIGN float world_per_z[kLanes];    ///< length of the ray for one unit of z
@@ -77,6 +78,7 @@ class Walker {
     lanes_.ray[lane] = kNoRay;
     lanes_.alive[lane] = 0;
     lanes_.cell[lane] = 0;
+    lanes_.front_node[lane] = -1;
     for (int k = 0; k < 3; ++k) {
       lanes_.id[k][lane] = 0;
       lanes_.x[k][lane] = lanes_.y[k][lane] = lanes_.z[k][lane] = lanes_.scalar[k][lane] = lanes_.weight[k][lane] =
@@ -150,6 +152,7 @@ class Walker {
       lanes_.scalar[k][lane] = scalar[k];
     }
     lanes_.cell[lane] = face.cell;
+    lanes_.front_node[lane] = -1;
     lanes_.z_front[lane] = total > 0.0f ? depth / total : z[0];
     lanes_.z_checked[lane] = -std::numeric_limits<float>::infinity();
     lanes_.scalar_front[lane] = total > 0.0f ? value / total : scalar[0];
@@ -183,7 +186,7 @@ class Walker {
     s.scalar_front = hn::Load(kFloat, lanes_.scalar_front);
     s.sum = {hn::Load(kFloat, lanes_.red), hn::Load(kFloat, lanes_.green), hn::Load(kFloat, lanes_.blue),
              hn::Load(kFloat, lanes_.transmittance)};
-    s.front = integrator_.front_at(s.scalar_front);
+    s.front = integrator_.restore_front(hn::Load(kInt, lanes_.front_node), s.scalar_front);
     s.alive = float_mask(hn::Ne(hn::Load(kUint, lanes_.alive), hn::Zero(kUint)));
     return s;
   }
@@ -200,6 +203,7 @@ class Walker {
     hn::Store(s.cell, kUint, lanes_.cell);
     hn::Store(s.z_front, kFloat, lanes_.z_front);
     hn::Store(s.scalar_front, kFloat, lanes_.scalar_front);
+    hn::Store(Integrator::node_of(s.front), kInt, lanes_.front_node);
     hn::Store(s.sum.red, kFloat, lanes_.red);
     hn::Store(s.sum.green, kFloat, lanes_.green);
     hn::Store(s.sum.blue, kFloat, lanes_.blue);
@@ -330,19 +334,8 @@ class Walker {
         hn::Mul(hn::Max(hn::Sub(z_back, z_near), constant(0.0f)), hn::Load(kFloat, lanes_.world_per_z));
     segment.length = hn::IfThenElse(before, hn::IfThenElseZero(s.alive, visible), segment.length);
     const auto clipped = integrator_.front_at(segment.scalar_front);
-    select_front(before, clipped, s.front);
+    Integrator::replace_front(before, clipped, s.front);
   }
-
-  static HWY_INLINE void select_front(Mask mask, const typename AntiderivativeIntegrator::Front& from,
-                                      typename AntiderivativeIntegrator::Front& to) {
-    to.position = hn::IfThenElse(mask, from.position, to.position);
-    for (int i = 0; i < 4; ++i) {
-      to.sums[i] = hn::IfThenElse(int_mask(mask), from.sums[i], to.sums[i]);
-      to.densities[i] = hn::IfThenElse(mask, from.densities[i], to.densities[i]);
-    }
-  }
-  template <class Front>
-  static HWY_INLINE void select_front(Mask, const Front&, Front&) {}
 
   /// Stops rays of which no 8-bit pixel can change any more: whatever follows adds between nothing and the
   /// transmittance to each channel, over any background, with or without alpha.

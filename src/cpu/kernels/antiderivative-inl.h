@@ -1,0 +1,307 @@
+// The default integrator: differences of antiderivatives.
+
+#if defined(TETRAVOX_CPU_ANTIDERIVATIVE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETRAVOX_CPU_ANTIDERIVATIVE_INL
+#undef TETRAVOX_CPU_ANTIDERIVATIVE_INL
+#else
+#define TETRAVOX_CPU_ANTIDERIVATIVE_INL
+#endif
+
+#include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/segments-inl.h"
+#include "src/cpu/kernels/vector_math-inl.h"
+
+#include <cmath>
+
+HWY_BEFORE_NAMESPACE();
+namespace tetravox::cpu {
+namespace HWY_NAMESPACE {
+
+/// Integrals from tables of antiderivatives (src/optics/antiderivative_table.h).
+///
+/// alpha is exact. The emission is taken as spread like the extinction: C = mean colour * (1 - exp(-tau)). Where the
+/// colour changes by dc within the segment that errs by up to dc tau^2 / 12 (first term of the expansion in tau), so
+/// the segment is cut into pieces wherever that exceeds the tolerance. Where a segment meets a step of the function,
+/// which no table of nodes can place exactly, it is integrated from control point to control point.
+class AntiderivativeIntegrator {
+ public:
+  /// The function at a scalar: antiderivatives in fixed point, densities rho, rho * colour.
+  struct Point {
+    Float position;  // in nodes
+    Int sums[4];
+    Float densities[4];
+  };
+  using Front = Point;
+
+  explicit AntiderivativeIntegrator(const IntegratorTables& tables)
+      : table_(*tables.antiderivative),
+        entries_(table_.entries.data()),
+        points_(*tables.control_points),
+        split_threshold_(12.0f * tables.tolerance) {}
+
+  HWY_INLINE Front front_at(Float scalar) const { return point_at(position(scalar)); }
+  HWY_INLINE Front restore_front(Int, Float scalar) const { return front_at(scalar); }
+  static HWY_INLINE Int node_of(const Front&) { return hn::Zero(kInt); }
+  static HWY_INLINE void replace_front(Mask mask, const Front& from, Front& to) {
+    to.position = hn::IfThenElse(mask, from.position, to.position);
+    for (int i = 0; i < 4; ++i) {
+      to.sums[i] = hn::IfThenElse(int_mask(mask), from.sums[i], to.sums[i]);
+      to.densities[i] = hn::IfThenElse(mask, from.densities[i], to.densities[i]);
+    }
+  }
+
+  HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
+    const Point back = point_at(position(segment.scalar_back));
+    Float integrals[4];
+    integrate_between(front, back, segment.length, integrals);
+
+    // Pick the segments that are thick, or that may change colour too much, or that leave the table, or meet a step.
+    const Float depth = integrals[0];
+    const Float nodes = hn::Abs(hn::Sub(back.position, front.position));
+    const Float change = hn::Min(constant(1.0f), hn::Mul(nodes, constant(table_.largest_color_slope)));
+    Mask special = hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), change), constant(split_threshold_)),
+                          hn::Gt(depth, constant(0.25f)));
+    special = hn::Or(special, hn::Or(outside(back.position), outside(front.position)));
+    Mask stepped = hn::FirstN(kFloat, 0);
+    if (table_.has_steps) {
+      stepped = meets_step(front.position, back.position);
+      special = hn::Or(special, stepped);
+    }
+    const Accumulated before = sum;
+    composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
+    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, special)))
+      integrate_instead(segment, front, back, special, stepped, depth, before, sum);
+    front = back;
+  }
+
+  // ---- for the gentle variant below ----
+
+  /// Integrates the segments of `special` carefully, from what had been accumulated `before`.
+  HWY_INLINE void integrate_instead(const Segments& segment, const Point& front, const Point& back, Mask special,
+                                    Mask stepped, Float depth, const Accumulated& before, Accumulated& sum) const {
+    Accumulated other = before;
+    if (!hn::AllFalse(kFloat, stepped)) integrate_exactly(segment, stepped, other);
+    integrate_pieces(segment.length, front, back, hn::AndNot(stepped, special), depth, other);
+    sum.red = hn::IfThenElse(special, other.red, sum.red);
+    sum.green = hn::IfThenElse(special, other.green, sum.green);
+    sum.blue = hn::IfThenElse(special, other.blue, sum.blue);
+    sum.transmittance = hn::IfThenElse(special, other.transmittance, sum.transmittance);
+  }
+  HWY_INLINE Float position(Float scalar) const {
+    return hn::Mul(hn::Sub(scalar, constant(table_.first)), constant(table_.nodes_per_scalar));
+  }
+  HWY_INLINE Float last_position() const { return constant(static_cast<float>(table_.last_node)); }
+  HWY_INLINE Float inside(Float at) const { return hn::Min(hn::Max(at, constant(0.0f)), last_position()); }
+  HWY_INLINE Mask outside(Float at) const { return hn::Ne(at, inside(at)); }
+
+ private:
+  HWY_INLINE Point point_at(Float at) const {
+    const Float clamped = inside(at);
+    const Int node = hn::Min(hn::ConvertTo(kInt, clamped), hn::Set(kInt, table_.last_node - 1));
+    const Float f = hn::Sub(clamped, hn::ConvertTo(kFloat, node));
+    const Float half_f = hn::Mul(constant(0.5f), f);
+    // A node's densities follow its sums; those of the next node end the line from it.
+    const Uint record = hn::BitCast(kUint, hn::Add(node, node));
+    const Record sums = load_records(entries_->sums.data(), record);
+    const Record low = load_records(entries_->densities.data(), record);
+    const Record high = load_records((entries_ + 1)->densities.data(), record);
+    const Float scaled = hn::Mul(f, constant(table_.units_per_density));
+    Point point;
+    point.position = at;
+    const auto channel = [&](int i, Float base, Float d0, Float d1) {
+      const Float slope = hn::Sub(d1, d0);
+      const Float mean = multiply_add(half_f, slope, d0);
+      point.sums[i] = hn::Add(hn::BitCast(kInt, base), hn::NearestInt(hn::Mul(scaled, mean)));
+      point.densities[i] = multiply_add(f, slope, d0);
+    };
+    channel(0, sums.x, low.x, high.x);
+    channel(1, sums.y, low.y, high.y);
+    channel(2, sums.z, low.z, high.z);
+    channel(3, sums.w, low.w, high.w);
+    return point;
+  }
+
+  /// Optical depth and emission between two points inside the table.
+  HWY_INLINE void integrate_between(const Point& a, const Point& b, Float length, Float integrals[4]) const {
+    const Float nodes = hn::Sub(b.position, a.position);
+    const Mask flat = hn::Lt(hn::Abs(nodes), constant(1.0f));
+    const Float scale =
+        hn::Div(hn::Mul(length, constant(table_.density_per_unit)), hn::IfThenElse(flat, constant(1.0f), nodes));
+    const Float half = hn::Mul(length, constant(0.5f));
+    for (int i = 0; i < 4; ++i) {
+      const Float difference = hn::Mul(hn::ConvertTo(kFloat, hn::Sub(b.sums[i], a.sums[i])), scale);
+      integrals[i] = hn::IfThenElse(flat, hn::Mul(hn::Add(a.densities[i], b.densities[i]), half), difference);
+    }
+  }
+
+  /// The same where a point may lie beyond the table's ends: there the function is constant.
+  HWY_INLINE void integrate_anywhere(const Point& a, const Point& b, Float length, Float integrals[4]) const {
+    const auto below = [&](Float at) { return hn::Min(at, constant(0.0f)); };
+    const auto above = [&](Float at) { return hn::Max(hn::Sub(at, last_position()), constant(0.0f)); };
+    const Float below_nodes = hn::Sub(below(b.position), below(a.position));
+    const Float above_nodes = hn::Sub(above(b.position), above(a.position));
+    const Float nodes = hn::Sub(b.position, a.position);
+    const Mask flat = hn::Lt(hn::Abs(nodes), constant(1.0f));
+    const Float scale = hn::Div(length, hn::IfThenElse(flat, constant(1.0f), nodes));
+    for (int i = 0; i < 4; ++i) {
+      const Float low = constant(table_.density_below[i]), high = constant(table_.density_above[i]);
+      const auto density = [&](const Point& p) {
+        const Mask under = hn::Lt(p.position, constant(0.0f)), over = hn::Gt(p.position, last_position());
+        return hn::IfThenElse(under, low, hn::IfThenElse(over, high, p.densities[i]));
+      };
+      Float total = hn::Mul(hn::ConvertTo(kFloat, hn::Sub(b.sums[i], a.sums[i])), constant(table_.density_per_unit));
+      total = multiply_add(low, below_nodes, total);
+      total = multiply_add(high, above_nodes, total);
+      const Float mean = hn::Mul(constant(0.5f), hn::Add(density(a), density(b)));
+      integrals[i] = hn::IfThenElse(flat, hn::Mul(mean, length), hn::Mul(total, scale));
+    }
+  }
+
+  HWY_INLINE Int node_at(Float at) const { return hn::ConvertTo(kInt, inside(at)); }
+
+  /// Whether a step of the function lies between the two positions, or within two nodes of either.
+  HWY_INLINE Mask meets_step(Float a, Float b) const {
+    const std::int32_t* steps = table_.steps_before.data();
+    const Int low = node_at(hn::Sub(hn::Min(a, b), constant(2.0f)));
+    const Int high = hn::Min(hn::Add(node_at(hn::Add(hn::Max(a, b), constant(2.0f))), hn::Set(kInt, 1)),
+                             hn::Set(kInt, table_.last_node));
+    return hn::RebindMask(kFloat, hn::Ne(hn::GatherIndex(kInt, steps, low), hn::GatherIndex(kInt, steps, high)));
+  }
+
+  /// Cuts the segments of `lanes` into equal pieces, as many as the tolerance asks for, and composites them.
+  HWY_NOINLINE void integrate_pieces(Float length, const Point& front, const Point& back, Mask lanes, Float depth,
+                                     Accumulated& sum) const {
+    // Pieces: dc (tau / n)^2 / 12 <= tolerance for the piece in which the colour may change at once.
+    const float* variation = table_.color_variation.data();
+    const Float change =
+        hn::Min(constant(1.0f), hn::Abs(hn::Sub(hn::GatherIndex(kFloat, variation, node_at(back.position)),
+                                                hn::GatherIndex(kFloat, variation, node_at(front.position)))));
+    const Float span = hn::Sub(back.position, front.position);
+    Float wanted = hn::Mul(depth, hn::Sqrt(hn::Div(change, constant(split_threshold_))));
+    wanted = hn::IfThenElse(hn::Gt(wanted, constant(1.0f)), wanted, constant(1.0f));
+    const Float pieces = hn::IfThenElse(lanes, hn::Ceil(hn::Min(wanted, constant(4096.0f))), constant(1.0f));
+    const Float share = hn::Div(constant(1.0f), pieces);
+    const Float piece_length = hn::Mul(length, share);
+    const Float step = hn::Mul(span, share);
+
+    Point at = front;
+    Mask active = lanes;
+    for (Float k = constant(1.0f); !hn::AllFalse(kFloat, active); k = hn::Add(k, constant(1.0f))) {
+      const Mask last = hn::Ge(k, pieces);
+      const Point next = point_at(hn::IfThenElse(last, back.position, multiply_add(step, k, front.position)));
+      Float integrals[4];
+      integrate_anywhere(at, next, hn::IfThenElseZero(active, piece_length), integrals);
+      composite_piece(integrals[0], integrals + 1, absorbed_ratio(integrals[0]), sum);
+      at = next;
+      // What comes after a millionth of the light has no colour to add.
+      active = hn::AndNot(last, hn::And(active, hn::Gt(sum.transmittance, constant(1e-6f))));
+    }
+  }
+
+  /// From control point to control point, in pieces so thin that self-attenuation is within the tolerance.
+  HWY_NOINLINE void integrate_exactly(const Segments& segment, Mask lanes, Accumulated& sum) const {
+    const float deepest = std::sqrt(split_threshold_);
+    for_each_linear_piece(points_, segment, lanes, deepest, sum.transmittance,
+                          [&](const Record& a, const Record& b, Float length) {
+                            const Float depth = hn::Mul(hn::Mul(constant(0.5f), hn::Add(a.x, b.x)), length);
+                            const auto emission = [&](Float c0, Float c1) {
+                              // Integral of (c0 + dc t)(rho0 + drho t) over t in [0, 1].
+                              const Float front = multiply_add(hn::Add(a.x, a.x), c0, hn::Mul(a.x, c1));
+                              const Float back = multiply_add(hn::Add(b.x, b.x), c1, hn::Mul(b.x, c0));
+                              return hn::Mul(hn::Mul(hn::Add(front, back), length), constant(1.0f / 6.0f));
+                            };
+                            const Float emissions[3] = {emission(a.y, b.y), emission(a.z, b.z), emission(a.w, b.w)};
+                            composite_piece(depth, emissions, absorbed_ratio(depth), sum);
+                          });
+  }
+
+  const optics::AntiderivativeTable& table_;
+  const optics::AntiderivativeTable::Node* entries_;
+  ControlPoints points_;
+  float split_threshold_;
+};
+
+/// The same for functions that are gentle at the table's resolution (`AntiderivativeTable::is_gentle`): scalars are
+/// rounded to nodes, so that a segment costs one 16-byte load instead of three.
+class GentleAntiderivativeIntegrator {
+ public:
+  /// The node that stands for the scalar at the front, and the antiderivatives there.
+  struct Front {
+    Int node;
+    Int sums[4];
+  };
+
+  explicit GentleAntiderivativeIntegrator(const IntegratorTables& tables)
+      : table_(*tables.antiderivative), precise_(tables), split_threshold_(12.0f * tables.tolerance) {}
+
+  HWY_INLINE Front front_at(Float scalar) const { return front_of(nearest_node(precise_.position(scalar))); }
+  HWY_INLINE Front restore_front(Int node, Float scalar) const {
+    const hn::Mask<IntTag> fresh = hn::Lt(node, hn::Zero(kInt));
+    return front_of(hn::IfThenElse(fresh, nearest_node(precise_.position(scalar)), node));
+  }
+  static HWY_INLINE Int node_of(const Front& front) { return front.node; }
+  static HWY_INLINE void replace_front(Mask mask, const Front& from, Front& to) {
+    to.node = hn::IfThenElse(int_mask(mask), from.node, to.node);
+    for (int i = 0; i < 4; ++i) to.sums[i] = hn::IfThenElse(int_mask(mask), from.sums[i], to.sums[i]);
+  }
+
+  HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
+    const Float back_position = precise_.position(segment.scalar_back);
+    const Int back = nearest_node(back_position);
+    const Int nodes = hn::Sub(back, front.node);
+    const hn::Mask<IntTag> flat = hn::Lt(hn::Abs(nodes), hn::Set(kInt, kFlatNodes + 1));
+    const Mask flat_lanes = hn::RebindMask(kFloat, flat);
+
+    // A flat segment reads the density at its middle; any other, the antiderivatives at its back.
+    const Int middle = hn::Add(back, front.node);  // twice the node: a node's densities follow its sums
+    const Int at = hn::IfThenElse(flat, hn::Or(middle, hn::Set(kInt, 1)), hn::Add(back, back));
+    const Record record = load_records(table_.entries.data()->sums.data(), hn::BitCast(kUint, at));
+    const Float values[4] = {record.x, record.y, record.z, record.w};
+    const Float node_count = hn::ConvertTo(kFloat, hn::IfThenElse(flat, hn::Set(kInt, 1), nodes));
+    const Float scale = hn::Div(hn::Mul(segment.length, constant(table_.density_per_unit)), node_count);
+    Float integrals[4];
+    for (int i = 0; i < 4; ++i) {
+      const Int difference = hn::Sub(hn::BitCast(kInt, values[i]), front.sums[i]);
+      integrals[i] = hn::IfThenElse(flat_lanes, hn::Mul(values[i], segment.length),
+                                    hn::Mul(hn::ConvertTo(kFloat, difference), scale));
+    }
+
+    const Float depth = integrals[0];
+    const Float change = hn::Min(constant(1.0f), hn::Mul(hn::Abs(node_count), constant(table_.largest_color_slope)));
+    const Mask thick = hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), change), constant(split_threshold_)),
+                              hn::Gt(depth, constant(0.25f)));
+    const Mask special = hn::Or(
+        thick, hn::Or(precise_.outside(back_position), precise_.outside(precise_.position(segment.scalar_front))));
+    const Accumulated before = sum;
+    composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
+    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, special)))
+      precise_.integrate_instead(segment, precise_.front_at(segment.scalar_front),
+                                 precise_.front_at(segment.scalar_back), special, hn::FirstN(kFloat, 0), depth, before,
+                                 sum);
+
+    // The front stays where it is while the scalar is flat, so that nothing is lost to rounding.
+    front.node = hn::IfThenElse(flat, front.node, back);
+    for (int i = 0; i < 4; ++i) front.sums[i] = hn::IfThenElse(flat, front.sums[i], hn::BitCast(kInt, values[i]));
+  }
+
+ private:
+  static constexpr std::int32_t kFlatNodes = optics::AntiderivativeTable::kFlatNodes;
+
+  HWY_INLINE Front front_of(Int node) const {
+    const Record record = load_records(table_.entries.data()->sums.data(), hn::BitCast(kUint, hn::Add(node, node)));
+    return {node,
+            {hn::BitCast(kInt, record.x), hn::BitCast(kInt, record.y), hn::BitCast(kInt, record.z),
+             hn::BitCast(kInt, record.w)}};
+  }
+  HWY_INLINE Int nearest_node(Float at) const { return hn::NearestInt(precise_.inside(at)); }
+
+  const optics::AntiderivativeTable& table_;
+  AntiderivativeIntegrator precise_;
+  float split_threshold_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetravox::cpu
+HWY_AFTER_NAMESPACE();
+
+#endif
