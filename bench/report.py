@@ -33,6 +33,11 @@ def megabytes(value):
     return f"{value / 2**20:.0f} MiB"
 
 
+def tool_memory(statistics):
+    """Peak of the tool and of its reader process, which lives for a part of that time."""
+    return statistics["bytes"]["peak_rss"] + statistics["bytes"]["reader_peak_rss"]
+
+
 def error(value):
     return f"{value['max']:.1e} ({value['rms']:.1e})" if "max" in value else "SKIPPED"
 
@@ -50,14 +55,14 @@ def rendering_table(rows):
         times = own["seconds"]
         lines.append([name, size, "**tetravox**", seconds(times["frame"]), "", error(own["error"]),
                       seconds(times["read"]), seconds(times["prepare"]) + " / " + seconds(times["first_frame"]),
-                      megabytes(own["bytes"]["peak_rss"])])
+                      megabytes(tool_memory(own))])
         for peer in ("bunyk", "pt"):
             other = row[peer]
             if "skipped" in other:
                 lines.append([name, size, *skipped_row(other, peer, len(header) - 2)])
                 continue
             lines.append([name, size, f"VTK {other['vtk']} {peer}", seconds(other["frame"]),
-                          f"{other['frame'] / times['frame']:.1f}×", error(other["error"]), seconds(other["read"]),
+                          f"{other['ratio']:.1f}×", error(other["error"]), seconds(other["read"]),
                           "– / " + seconds(other["first_frame"]), megabytes(other["peak_rss"])])
     return table(header, lines)
 
@@ -99,7 +104,7 @@ def scaling_table(rows):
         times, segments = row["seconds"], row["segments"]
         lines.append([f"{row['cells']:,}", seconds(times["frame"]), f"{segments / 1e6:.1f} M",
                       f"{times['frame'] / segments * 1e9:.1f}", megabytes(row["bytes"]["mesh"]),
-                      megabytes(row["bytes"]["peak_rss"]), seconds(times["prepare"]),
+                      megabytes(tool_memory(row)), seconds(times["prepare"]),
                       f"{row['cells'] / times['prepare'] / 1e6:.1f}"])
     return table(header, lines)
 
@@ -118,9 +123,10 @@ def tables(results):
     """All tables as one Markdown text."""
     where = results["machine"]
     return "\n\n".join([
-        f"Measured on {where['cores']} cores, {where['processor']}. Times are medians; the programs take turns.",
+        f"Measured on {where['cores']} cores, {where['processor']}. The programs take turns; times and ratios are medians over"
+        " the rounds.",
         "**Beside VTK.** Errors in colour, over black, against exact pre-integration (`partial`) at the same size; VTK's"
-        " pictures have 8 bits a channel, which alone errs by 2.0e-3.",
+        " pictures have 8 bits a channel, which alone errs by 2.0e-3. Memory of tetravox is the tool's peak plus its reader's.",
         rendering_table(results["rendering"]),
         "**Speed.** A segment is one ray in one tetrahedron.",
         speed_table(results["rendering"]),
