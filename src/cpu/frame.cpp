@@ -19,11 +19,6 @@ Vector3 normalized(const Vector3& a) {
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 
-/// All rays are shifted by this much, in local units (the mesh is two of them wide): five units in the last place of
-/// float. Cameras and meshes are often aligned; rays that run along edges and through vertices exactly have no one way
-/// to go.
-constexpr double kShiftX = 3.1e-7, kShiftY = 2.3e-7;
-
 }  // namespace
 
 CameraFrame make_camera_frame(const PreparedMesh& mesh, const Camera& camera, int width, int height) {
@@ -59,8 +54,8 @@ Rays make_rays(const CameraFrame& frame, double world_per_local) {
           static_cast<float>(frame.is_orthographic ? eye + at : eye - static_cast<double>(slopes[i]) * frame.eye[2]);
     }
   };
-  fill(frame.width, frame.eye[0] + kShiftX, 1.0, rays.column_offset, rays.column_slope);
-  fill(frame.height, frame.eye[1] + kShiftY, -1.0, rays.row_offset, rays.row_slope);
+  fill(frame.width, frame.eye[0], 1.0, rays.column_offset, rays.column_slope);
+  fill(frame.height, frame.eye[1], -1.0, rays.row_offset, rays.row_slope);
   rays.grid = {frame.width,
                frame.height,
                rays.column_offset.data(),

@@ -14,7 +14,10 @@ constexpr double kNodesPerPiece = 128.0;
 constexpr std::int32_t kGentleNodes = 16384;
 constexpr std::int32_t kFewestNodes = 2048;
 constexpr std::int32_t kMostNodes = 16384;
-/// T at the last node, as an integer: half of what fits, since densities at the ends may be rounded up.
+/// Error of the picture that a flat segment between two nodes may cause; where it may be more, segments are integrated
+/// from control point to control point.
+constexpr double kCoarseError = 3e-4;
+/// T at the last node, as an integer.
 constexpr double kFullScale = 1 << 30;
 
 using Density = std::array<double, 4>;  // rho, rho*red, rho*green, rho*blue
@@ -42,6 +45,16 @@ struct Piece {
                slopes[0] * slopes[channel] * square);
   }
 };
+
+/// rho and colour * rho at a value.
+Density eval_piece(const Piece& piece, double value) {
+  const double x = value - piece.begin;
+  const double extinction = piece.rates[0] + piece.slopes[0] * x;
+  Density density{extinction};
+  for (int channel = 1; channel < 4; ++channel)
+    density[channel] = extinction * (piece.rates[channel] + piece.slopes[channel] * x);
+  return density;
+}
 
 Piece make_piece(const OpticalPoint& a, const OpticalPoint& b) {
   Piece piece;
@@ -72,20 +85,27 @@ std::vector<Piece> make_pieces(const OpticalFunction& function) {
   return pieces;
 }
 
-/// The interval of values that the nodes cover: where the function varies and the data lie, and as much of the data
-/// beyond the function's ends as costs little (there the function is constant, which takes a slower path).
-ValueRange table_range(const OpticalFunction& function, const ScalarMap& map, const ValueRange& range) {
+/// The interval of values where the function varies and the data lie: what the nodes have to resolve.
+ValueRange varying_range(const OpticalFunction& function, const ScalarMap& map, const ValueRange& range) {
   const double first = function.points.front().value, last = function.points.back().value;
-  const double margin = last - first;
-  ValueRange covered{std::max(first - margin, range.min), std::min(last + margin, range.max)};
-  if (covered.max > covered.min) {
-    const double rounding = 1e-5 * (covered.max - covered.min);
-    return {covered.min - rounding, covered.max + rounding};
-  }
+  const ValueRange varying{std::max(first, range.min), std::min(last, range.max)};
+  if (varying.max > varying.min) return varying;
   // Constant data, a constant function, or no overlap: any interval serves.
   const double middle = std::clamp(range.min, first, last);
   const double half = std::max({std::abs(middle) * 1e-6, std::abs(map.scale) * 1e-6, 1e-300});
   return {middle - half, middle + half};
+}
+
+/// Adds nodes for data beyond the ends of the function, as many again at most: there it is constant, and without nodes
+/// segments take a slower path. The ends of the function stay on nodes.
+ValueRange extend_range(const ValueRange& varying, const ValueRange& range, std::int32_t& count) {
+  const double width = (varying.max - varying.min) / count;
+  const auto beyond = [&](double distance) {
+    return static_cast<std::int32_t>(std::ceil(std::clamp(distance / width, 0.0, static_cast<double>(count))));
+  };
+  const std::int32_t below = beyond(varying.min - range.min), above = beyond(range.max - varying.max);
+  count += below + above;
+  return {varying.min - below * width, varying.max + above * width};
 }
 
 std::int32_t choose_node_count(const OpticalFunction& function, const ValueRange& covered) {
@@ -146,6 +166,9 @@ class BinIntegrals {
     return sum;
   }
 
+  /// Density where the last interval ended; at a step, beyond it.
+  Density density() const { return eval_piece(pieces_[piece_], begin_); }
+
  private:
   std::vector<Piece> pieces_;
   std::size_t piece_ = 0;
@@ -177,9 +200,14 @@ class ColorVariation {
   double total_ = 0.0, largest_ = 0.0;
 };
 
-/// Fills nodes and colour variation. The density at a node is the mean over the two bins beside it, and linear between
-/// nodes; the sums are the integrals of just that.
-void fill_nodes(const OpticalFunction& function, const ValueRange& covered, AntiderivativeTable& table) {
+/// Optical depth that an error in extinction is worth: along the longest ray, or as far as light gets.
+double visible_length(double extinction, double longest) {
+  return 1.0 / std::max(std::numbers::e * extinction, 1.0 / longest);
+}
+
+/// Fills nodes and colour variation, and marks the intervals between nodes in which the density is not nearly linear.
+void fill_nodes(const OpticalFunction& function, const ValueRange& covered, double longest,
+                AntiderivativeTable& table) {
   const std::int32_t count = table.last_node;
   const double width = (covered.max - covered.min) / count;
   const double total = BinIntegrals(function, covered.min).next(covered.max)[0] / width;
@@ -188,47 +216,53 @@ void fill_nodes(const OpticalFunction& function, const ValueRange& covered, Anti
   table.units_per_density = static_cast<float>(1.0 / unit);
   table.entries.resize(static_cast<std::size_t>(count) + 1);
   table.color_variation.resize(static_cast<std::size_t>(count) + 1);
+  table.is_coarse.assign(static_cast<std::size_t>(count) + 1, 0);
 
   BinIntegrals bins(function, covered.min);
+  bins.next(covered.min);
   ColorVariation variation;
-  const double mean_scale = 0.5 / width, sum_scale = 0.5 / unit;
-  Density bin = bins.next(covered.min + width), density{}, sum{};
-  for (int channel = 0; channel < 4; ++channel) density[channel] = 2.0 * mean_scale * bin[channel];
+  Density density = bins.density(), sum{};
+  const double sum_scale = 1.0 / (unit * width);
   for (std::int32_t i = 0; i <= count; ++i) {
     AntiderivativeTable::Node& node = table.entries[i];
     table.color_variation[i] = variation.total();
-    variation.add(bin);
-    const Density next_bin = i + 2 <= count ? bins.next(covered.min + width * (i + 2)) : bin;
     for (int channel = 0; channel < 4; ++channel) {
       node.sums[channel] = static_cast<std::int32_t>(sum[channel] + 0.5);
       node.densities[channel] = static_cast<float>(density[channel]);
-      const double next_density = mean_scale * (bin[channel] + next_bin[channel]);
-      sum[channel] += sum_scale * (density[channel] + next_density);
-      density[channel] = next_density;
     }
-    bin = next_bin;
+    if (i == count) break;
+    const Density bin = bins.next(covered.min + width * (i + 1)), next = bins.density();
+    variation.add(bin);
+    double error = 0.0;
+    for (int channel = 0; channel < 4; ++channel) {
+      sum[channel] += sum_scale * bin[channel];
+      error = std::max(error, std::abs(bin[channel] / width - 0.5 * (density[channel] + next[channel])));
+    }
+    if (error * visible_length(std::min(density[0], next[0]), longest) > kCoarseError) table.is_coarse[i] = 1;
+    density = next;
   }
   table.largest_color_slope = variation.largest();
 }
 
-/// Counts the steps below every node.
-void count_steps(const OpticalFunction& function, const ValueRange& covered, AntiderivativeTable& table) {
-  std::vector<double> steps;
-  for (std::size_t i = 0; i + 1 < function.points.size(); ++i) {
-    const OpticalPoint& a = function.points[i];
-    const OpticalPoint& b = function.points[i + 1];
-    const bool inside = a.value >= covered.min && a.value <= covered.max;
-    if (a.value == b.value && inside && (a.extinction != b.extinction || a.color != b.color)) steps.push_back(a.value);
-  }
-  table.has_steps = !steps.empty();
-  table.steps_before.clear();
-  if (!table.has_steps) return;
-  table.steps_before.resize(static_cast<std::size_t>(table.last_node) + 1);
-  const double width = (covered.max - covered.min) / table.last_node;
-  std::size_t passed = 0;
-  for (std::int32_t i = 0; i <= table.last_node; ++i) {
-    while (passed < steps.size() && steps[passed] < covered.min + width * i) ++passed;
-    table.steps_before[i] = static_cast<std::int32_t>(passed);
+/// Marks the intervals at whose control points the line between the nodes is off, and both neighbours of a step.
+void mark_control_points(const OpticalFunction& function, const ValueRange& covered, double longest,
+                         AntiderivativeTable& table) {
+  const double inverse_width = table.last_node / (covered.max - covered.min);
+  for (std::size_t k = 0; k < function.points.size(); ++k) {
+    const OpticalPoint& point = function.points[k];
+    const double at = (point.value - covered.min) * inverse_width;
+    if (!(at >= 0.0 && at <= table.last_node)) continue;
+    const auto i = std::min(static_cast<std::int32_t>(at), table.last_node - 1);
+    const double f = at - i;
+    const Density exact = density_of(point);
+    double error = 0.0;
+    for (int channel = 0; channel < 4; ++channel) {
+      const double line = (1.0 - f) * table.entries[i].densities[channel] + f * table.entries[i + 1].densities[channel];
+      error = std::max(error, std::abs(exact[channel] - line));
+    }
+    if (error * visible_length(point.extinction, longest) <= kCoarseError) continue;
+    for (std::int32_t near = std::max(i - 1, 0); near <= std::min(i + 1, table.last_node); ++near)
+      table.is_coarse[near] = 1;
   }
 }
 
@@ -236,13 +270,16 @@ void count_steps(const OpticalFunction& function, const ValueRange& covered, Ant
 
 void build_antiderivative_table(const OpticalFunction& function, const ScalarMap& map, const ValueRange& range,
                                 double longest, AntiderivativeTable& table) {
-  const ValueRange covered = table_range(function, map, range);
-  table.is_gentle = is_gentle_function(function, covered, longest);
-  table.last_node = table.is_gentle ? kGentleNodes : choose_node_count(function, covered);
+  const ValueRange varying = varying_range(function, map, range);
+  table.is_gentle = is_gentle_function(function, varying, longest);
+  std::int32_t count = table.is_gentle ? kGentleNodes : choose_node_count(function, varying);
+  const ValueRange covered = extend_range(varying, range, count);
+  table.last_node = count;
   table.first = map.stored_from_value(covered.min);
-  table.nodes_per_scalar = static_cast<float>(map.scale * table.last_node / (covered.max - covered.min));
-  fill_nodes(function, covered, table);
-  count_steps(function, covered, table);
+  table.nodes_per_scalar = static_cast<float>(map.scale * count / (covered.max - covered.min));
+  fill_nodes(function, covered, longest, table);
+  mark_control_points(function, covered, longest, table);
+  table.has_coarse = std::find(table.is_coarse.begin(), table.is_coarse.end(), 1) != table.is_coarse.end();
 
   const bool starts_here = covered.min <= function.points.front().value;
   const Density below =

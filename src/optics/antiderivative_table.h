@@ -25,10 +25,11 @@ struct ScalarMap {
 
 /// Antiderivatives and densities at equally spaced nodes.
 ///
-/// The densities rho and rho * colour are averages over one node's width, linear between nodes; the antiderivatives are
-/// their exact integrals. How we differ from the literature: antiderivatives are fixed-point integers, so that
-/// differences of neighbours are exact however large T has grown; and segments that are flat at the table's
-/// resolution take the mean of their two densities instead of dividing by almost nothing.
+/// Antiderivatives and densities are exact at the nodes; between them the density is taken as linear, and intervals
+/// where that is not good enough (steps, features finer than the nodes) are marked. How we differ from the literature:
+/// antiderivatives are fixed-point integers, so that differences of neighbours are exact however large T has grown; and
+/// segments that are flat at the table's resolution take the mean of their two densities instead of dividing by almost
+/// nothing.
 struct AntiderivativeTable {
   struct Node {
     std::array<std::int32_t, 4> sums{};  ///< T, K_red, K_green, K_blue, in fixed point
@@ -38,11 +39,11 @@ struct AntiderivativeTable {
 
   std::int32_t last_node = 1;  ///< nodes are 0 ... last_node
   std::vector<Node> entries;   ///< [last_node + 1]
-  std::vector<float>
-      color_variation;  ///< [last_node + 1]: total variation of the visible colour up to the node, largest channel
-  std::vector<std::int32_t>
-      steps_before;  ///< [last_node + 1]: steps of the function below the node; empty without steps
-  bool has_steps = false;
+  /// [last_node + 1]: total variation of the visible colour up to the node, largest channel.
+  std::vector<float> color_variation;
+  /// [last_node + 1]: 1 where the density is not nearly linear up to the next node.
+  std::vector<std::int32_t> is_coarse;
+  bool has_coarse = false;  ///< whether any is
   /// Whether scalars may be rounded to nodes, and segments no longer than kFlatNodes read one density, without the
   /// picture changing by more than `kGentleError`.
   bool is_gentle = false;

@@ -21,8 +21,8 @@ namespace HWY_NAMESPACE {
 ///
 /// alpha is exact. The emission is taken as spread like the extinction: C = mean colour * (1 - exp(-tau)). Where the
 /// colour changes by dc within the segment that errs by up to dc tau^2 / 12 (first term of the expansion in tau), so
-/// the segment is cut into pieces wherever that exceeds the tolerance. Where a segment meets a step of the function,
-/// which no table of nodes can place exactly, it is integrated from control point to control point.
+/// the segment is cut into pieces wherever that exceeds the tolerance. Where a segment ends at a step of the function,
+/// or in a feature finer than the table's nodes, it is integrated from control point to control point.
 class AntiderivativeIntegrator {
  public:
   /// The function at a scalar: antiderivatives in fixed point, densities rho, rho * colour.
@@ -55,22 +55,23 @@ class AntiderivativeIntegrator {
     Float integrals[4];
     integrate_between(front, back, segment.length, integrals);
 
-    // Pick the segments that are thick, or that may change colour too much, or that leave the table, or meet a step.
+    // Pick the segments that are thick, or that may change colour too much, or leave the table, or end where it is
+    // coarse.
     const Float depth = integrals[0];
     const Float nodes = hn::Abs(hn::Sub(back.position, front.position));
     const Float change = hn::Min(constant(1.0f), hn::Mul(nodes, constant(table_.largest_color_slope)));
     Mask special = hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), change), constant(split_threshold_)),
                           hn::Gt(depth, constant(0.25f)));
     special = hn::Or(special, hn::Or(outside(back.position), outside(front.position)));
-    Mask stepped = hn::FirstN(kFloat, 0);
-    if (table_.has_steps) {
-      stepped = meets_step(front.position, back.position);
-      special = hn::Or(special, stepped);
+    Mask coarse = hn::FirstN(kFloat, 0);
+    if (table_.has_coarse) {
+      coarse = hn::Or(is_coarse(front.position), is_coarse(back.position));
+      special = hn::Or(special, coarse);
     }
     const Accumulated before = sum;
     composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
     if (HWY_UNLIKELY(!hn::AllFalse(kFloat, special)))
-      integrate_instead(segment, front, back, special, stepped, depth, before, sum);
+      integrate_instead(segment, front, back, special, coarse, depth, before, sum);
     front = back;
   }
 
@@ -78,10 +79,10 @@ class AntiderivativeIntegrator {
 
   /// Integrates the segments of `special` carefully, from what had been accumulated `before`.
   HWY_INLINE void integrate_instead(const Segments& segment, const Point& front, const Point& back, Mask special,
-                                    Mask stepped, Float depth, const Accumulated& before, Accumulated& sum) const {
+                                    Mask coarse, Float depth, const Accumulated& before, Accumulated& sum) const {
     Accumulated other = before;
-    if (!hn::AllFalse(kFloat, stepped)) integrate_exactly(segment, stepped, other);
-    integrate_pieces(segment.length, front, back, hn::AndNot(stepped, special), depth, other);
+    if (!hn::AllFalse(kFloat, coarse)) integrate_exactly(segment, coarse, other);
+    integrate_pieces(segment.length, front, back, hn::AndNot(coarse, special), depth, other);
     sum.red = hn::IfThenElse(special, other.red, sum.red);
     sum.green = hn::IfThenElse(special, other.green, sum.green);
     sum.blue = hn::IfThenElse(special, other.blue, sum.blue);
@@ -92,7 +93,9 @@ class AntiderivativeIntegrator {
   }
   HWY_INLINE Float last_position() const { return constant(static_cast<float>(table_.last_node)); }
   HWY_INLINE Float inside(Float at) const { return hn::Min(hn::Max(at, constant(0.0f)), last_position()); }
-  HWY_INLINE Mask outside(Float at) const { return hn::Ne(at, inside(at)); }
+  HWY_INLINE Mask outside(Float at) const {
+    return hn::Or(hn::Lt(at, constant(-0.5f)), hn::Gt(at, hn::Add(last_position(), constant(0.5f))));
+  }
 
  private:
   HWY_INLINE Point point_at(Float at) const {
@@ -159,13 +162,10 @@ class AntiderivativeIntegrator {
 
   HWY_INLINE Int node_at(Float at) const { return hn::ConvertTo(kInt, inside(at)); }
 
-  /// Whether a step of the function lies between the two positions, or within two nodes of either.
-  HWY_INLINE Mask meets_step(Float a, Float b) const {
-    const std::int32_t* steps = table_.steps_before.data();
-    const Int low = node_at(hn::Sub(hn::Min(a, b), constant(2.0f)));
-    const Int high = hn::Min(hn::Add(node_at(hn::Add(hn::Max(a, b), constant(2.0f))), hn::Set(kInt, 1)),
-                             hn::Set(kInt, table_.last_node));
-    return hn::RebindMask(kFloat, hn::Ne(hn::GatherIndex(kInt, steps, low), hn::GatherIndex(kInt, steps, high)));
+  /// Whether the table is too coarse at a position: a segment that ends there is left to the control points. One that
+  /// only passes over such a place is not: the antiderivatives are exact at all nodes.
+  HWY_INLINE Mask is_coarse(Float at) const {
+    return hn::RebindMask(kFloat, hn::Ne(hn::GatherIndex(kInt, table_.is_coarse.data(), node_at(at)), hn::Zero(kInt)));
   }
 
   /// Cuts the segments of `lanes` into equal pieces, as many as the tolerance asks for, and composites them.

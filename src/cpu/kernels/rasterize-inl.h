@@ -28,15 +28,19 @@ HWY_INLINE ShearedVertex shear_vertex(const float* vertex, Float x_offset, Float
           constant(vertex[1] - y_slope * vertex[2] - y_offset), z};
 }
 
-/// The product a x b, and whether the ray passes on the inner side of the edge.
+/// Whether a ray that meets the edge from (ax, ay) to (bx, by) exactly counts as passing on its inner (left) side.
 ///
-/// A ray that meets the edge exactly is moved by an infinitesimal (e, e^2), e > 0, so that it belongs to exactly one
-/// of the faces at that edge or vertex (Edelsbrunner, Muecke 1990, "Simulation of Simplicity").
+/// As if the ray were moved by an infinitesimal (e, e^2), e > 0, so that it belongs to exactly one of the faces at an
+/// edge or a vertex (Edelsbrunner, Muecke 1990, "Simulation of Simplicity").
+HWY_INLINE Mask passes_tie(Float ax, Float ay, Float bx, Float by) {
+  return hn::Or(hn::Lt(by, ay), hn::And(hn::Eq(by, ay), hn::Gt(bx, ax)));
+}
+
+/// The product a x b, not negative, and whether the ray passes on the inner side of the edge.
 HWY_INLINE Float edge_product(const ShearedVertex& a, const ShearedVertex& b, Mask& inside) {
   const Float product = hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x));
-  const Mask tie = hn::Eq(product, constant(0.0f));
-  const Mask moved = hn::Or(hn::Lt(b.y, a.y), hn::And(hn::Eq(b.y, a.y), hn::Gt(b.x, a.x)));
-  inside = hn::And(inside, hn::Or(hn::Gt(product, constant(0.0f)), hn::And(tie, moved)));
+  const Mask tie = hn::And(hn::Eq(product, constant(0.0f)), passes_tie(a.x, a.y, b.x, b.y));
+  inside = hn::And(inside, hn::Or(hn::Gt(product, constant(0.0f)), tie));
   return hn::Max(product, constant(0.0f));
 }
 

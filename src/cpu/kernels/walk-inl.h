@@ -8,6 +8,7 @@
 #endif
 
 #include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/rasterize-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 
@@ -249,8 +250,10 @@ class Walker {
     Mask positive[3];
     for (int k = 0; k < 3; ++k) {
       product[k] = hn::Sub(hn::Mul(s.x[k], y), hn::Mul(s.y[k], x));
-      positive[k] = hn::Ge(product[k], constant(0.0f));
+      positive[k] = hn::Gt(product[k], constant(0.0f));
     }
+    const Float together = hn::Mul(hn::Mul(product[0], product[1]), product[2]);
+    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, hn::Eq(together, constant(0.0f))))) break_ties(s, x, y, product, positive);
 
     // The ray leaves through the face without a, b or c: that vertex is replaced by d.
     const Mask out_a = hn::AndNot(positive[1], positive[2]);
@@ -297,6 +300,12 @@ class Walker {
     s.cell = hn::IfThenZeroElse(outside, neighbour);
     s.alive = hn::AndNot(float_mask(outside), s.alive);
     if (job_.use_early_ray_termination) terminate_early(s);
+  }
+
+  /// A ray that meets an edge exactly passes it as if it were moved by an infinitesimal: see `edge_product`.
+  static HWY_NOINLINE void break_ties(const RayState& s, Float x, Float y, const Float product[3], Mask positive[3]) {
+    for (int k = 0; k < 3; ++k)
+      positive[k] = hn::Or(positive[k], hn::And(hn::Eq(product[k], constant(0.0f)), passes_tie(s.x[k], s.y[k], x, y)));
   }
 
   HWY_INLINE void replace_vertex(RayState& s, Mask out_a, Mask out_b, Mask out_c, Uint d, Float x, Float y,
