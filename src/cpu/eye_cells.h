@@ -12,7 +12,10 @@ namespace tetravox::cpu {
 
 /// The four faces of every cell that holds the eye of a perspective camera (several where cells overlap), oriented like
 /// the boundary; none where the eye is outside. Walks along the view axis from every boundary face behind the eye.
+///
+/// An eye on a face, edge or vertex would belong to many cells, each of which sees a part of the picture: it is moved
+/// into one of them, by some millionths of the mesh's size, so `frame.eye` may change.
 std::vector<BoundaryFace> find_eye_cell_faces(const FrameMesh& mesh, std::span<const BoundaryFace> boundary,
-                                              std::size_t cell_count, const CameraFrame& frame);
+                                              std::size_t cell_count, CameraFrame& frame);
 
 }  // namespace tetravox::cpu

@@ -96,7 +96,6 @@ struct Frame {
 Frame prepare_frame(const PreparedMesh& mesh, const Camera& camera, const RenderSettings& settings, float* vertices) {
   Frame frame;
   frame.camera = cpu::make_camera_frame(mesh, camera, settings.width, settings.height);
-  frame.rays = cpu::make_rays(frame.camera, mesh.world_per_local);
   cpu::transform_vertices(mesh, frame.camera, vertices);
   frame.mesh = {vertices, static_cast<std::uint32_t>(mesh.vertices.size() - 1), mesh.cells.data(),
                 mesh.cell_scalars.empty() ? nullptr : mesh.cell_scalars.data(), mesh.boundary.data()};
@@ -104,6 +103,7 @@ Frame prepare_frame(const PreparedMesh& mesh, const Camera& camera, const Render
   std::size_t face_count = mesh.boundary.size();
   const std::vector<BoundaryFace> around =
       cpu::find_eye_cell_faces(frame.mesh, mesh.boundary, mesh.cells.size(), frame.camera);
+  frame.rays = cpu::make_rays(frame.camera, mesh.world_per_local);  // after that: the eye may have been moved
   if (!around.empty()) {
     frame.faces = mesh.boundary;
     frame.faces.insert(frame.faces.end(), around.begin(), around.end());
