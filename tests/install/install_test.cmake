@@ -1,4 +1,4 @@
-# Installs a build into an empty prefix, then configures, builds and runs examples/minimal against that prefix alone.
+# Installs a build into an empty prefix, then configures, builds and runs programs against that prefix alone.
 #
 #   cmake -DBUILD_DIR=.. -DSOURCE_DIR=.. -DWORK_DIR=.. [-DWITH_IO=ON] -P install_test.cmake
 
@@ -40,20 +40,31 @@ foreach(package_file IN LISTS package_files)
   endif()
 endforeach()
 
-# From here on a message of the compiler or the program is what a user would see.
-run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples/minimal -B ${WORK_DIR}/minimal -G Ninja -DCMAKE_BUILD_TYPE=Release
-  -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
-run(${CMAKE_COMMAND} --build ${WORK_DIR}/minimal)
+# A program builds on the installed package alone.
+function(build_program source name)
+  run(${CMAKE_COMMAND} -S ${source} -B ${WORK_DIR}/${name} -G Ninja -DCMAKE_BUILD_TYPE=Release
+    -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
+  run(${CMAKE_COMMAND} --build ${WORK_DIR}/${name})
+endfunction()
+build_program(${SOURCE_DIR}/examples/minimal minimal)
 run(${WORK_DIR}/minimal/minimal)
 
-# The installed tool draws, and finds the installed reader.
 if(WITH_IO)
   file(WRITE ${WORK_DIR}/cell.vtk "# vtk DataFile Version 3.0\none tetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\n"
     "POINTS 4 float\n0 0 0  1 0 0  0 1 0  0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
     "POINT_DATA 4\nSCALARS height float 1\nLOOKUP_TABLE default\n0 0 0 1\n")
+
+  # The installed tool finds the installed reader by itself.
   run(${CMAKE_COMMAND} -E env --unset=TETRAVOX_READER
     ${WORK_DIR}/prefix/bin/tetravox render ${WORK_DIR}/cell.vtk --resolution 64,48 -o ${WORK_DIR}/cell.png)
-  if(NOT EXISTS ${WORK_DIR}/cell.png)
-    message(FATAL_ERROR "the installed tool wrote no picture")
-  endif()
+
+  # A program elsewhere is told where it is.
+  build_program(${SOURCE_DIR}/tests/install/reading reading)
+  run(${CMAKE_COMMAND} -E env TETRAVOX_READER=${WORK_DIR}/prefix/libexec/tetravox/tetravox-reader
+    ${WORK_DIR}/reading/reading ${WORK_DIR}/cell.vtk ${WORK_DIR}/reading.png)
+  foreach(picture cell.png reading.png)
+    if(NOT EXISTS ${WORK_DIR}/${picture})
+      message(FATAL_ERROR "${picture} was not written")
+    endif()
+  endforeach()
 endif()
