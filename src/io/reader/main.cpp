@@ -16,6 +16,13 @@
 #include <fstream>
 #include <span>
 
+#if defined(__SANITIZE_ADDRESS__)
+/// In place of the limit of memory: wrong counts must not keep a machine busy with clearing gigabytes.
+extern "C" const char* __asan_default_options() { return "max_allocation_size_mb=2048:hard_rss_limit_mb=4096"; }
+#elif defined(__SANITIZE_THREAD__)
+extern "C" const char* __tsan_default_options() { return "max_allocation_size_mb=2048"; }
+#endif
+
 namespace tetravox::io {
 
 namespace {
@@ -186,7 +193,7 @@ int main(int argc, char** argv) {
     if (argc < 2) std::fprintf(stderr, "%s\n", error.what());
     io::send_error(error.code(), error.what());
   } catch (const std::exception& error) {
-    io::send_error(ErrorCode::kBadFile, error.what());
+    io::send_exception(error);
   }
   _exit(1);
 }

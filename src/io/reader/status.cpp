@@ -10,6 +10,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -100,6 +101,12 @@ std::string& out_of_memory_message() {
   return message;
 }
 
+/// Begins messages about exceptions.
+std::string& exception_message() {
+  static std::string message;
+  return message;
+}
+
 [[noreturn]] void leave_without_memory() {
   send_error(ErrorCode::kOutOfMemory, out_of_memory_message().c_str());
   _exit(1);
@@ -111,7 +118,7 @@ std::string& out_of_memory_message() {
   } catch (const std::bad_alloc&) {
     leave_without_memory();
   } catch (const std::exception& exception) {
-    send_error(ErrorCode::kBadFile, exception.what());
+    send_exception(exception);
     _exit(1);
   } catch (...) {
   }
@@ -135,6 +142,13 @@ void send_error(ErrorCode code, const char* text) noexcept {
   write_all(line, length);
 }
 
+void send_exception(const std::exception& exception) noexcept {
+  char text[512];
+  std::snprintf(text, sizeof text, "%s (%.100s): the file is damaged or not what its ending says",
+                exception_message().c_str(), exception.what());
+  send_error(ErrorCode::kBadFile, text);
+}
+
 void send_progress(double fraction) noexcept {
   char line[64];
   const int size = std::snprintf(line, sizeof line, "progress %.3f\n", fraction);
@@ -144,6 +158,8 @@ void send_progress(double fraction) noexcept {
 void send_done() noexcept { write_all("done\n", 5); }
 
 void install_error_handlers(const std::string& file, std::uint64_t memory_limit) {
+  const std::size_t begin = file.size() - std::min<std::size_t>(file.size(), 300);
+  exception_message() = std::string("'").append(file, begin).append("' has counts or sizes that make no sense");
   out_of_memory_message() = describe_out_of_memory(file, memory_limit);
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   vtkOutputWindow::SetInstance(&complaints());

@@ -5,12 +5,15 @@
 #include "tetravox/error.h"
 
 #include <cstdint>
+#include <exception>
 #include <string>
 
 namespace tetravox::io {
 
 /// Writes one line to the status pipe. Allocates nothing, so that it works when memory has run out.
 void send_error(ErrorCode code, const char* text) noexcept;
+/// The error for an exception of a library, about the file that `install_error_handlers` was told.
+void send_exception(const std::exception& exception) noexcept;
 void send_progress(double fraction) noexcept;
 void send_done() noexcept;
 

@@ -160,6 +160,8 @@ std::optional<std::uint64_t> expected_values(std::string_view tag, Place& place)
 void check_array(std::string_view tag, std::string_view content, const Encoding& encoding, Place& place,
                  const std::string& path) {
   const std::optional<std::uint64_t> expected = expected_values(tag, place);
+  if (place.section == "Points" && parse_count(attribute(tag, "NumberOfComponents")).value_or(3) != 3)
+    fail_file(path, "its points have other than three coordinates");
   const std::string_view format = attribute(tag, "format");
   const std::size_t size = size_of_type(attribute(tag, "type"));
   if (!expected || size == 0) return;

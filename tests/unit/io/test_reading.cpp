@@ -278,14 +278,15 @@ TEST_F(FakeReader, ThatIsMissingIsNamed) {
 }
 
 TEST(ReaderProcess, KeepsToItsMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers map terabytes, which no limit allows";
+#endif
   const TemporaryDirectory directory;
   test::write_text(directory.file("a.vtu"), test::vtu_text());
   ReadOptions options;
   options.memory_limit = 1 << 20;
   const Error error = error_of(directory.file("a.vtu"), options);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   EXPECT_EQ(error.code(), ErrorCode::kOutOfMemory) << error.what();
-#endif
 }
 
 TEST(ReaderProcess, ReportsProgress) {
