@@ -71,7 +71,7 @@ class AntiderivativeIntegrator {
     const Accumulated before = sum;
     composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
     if (HWY_UNLIKELY(!hn::AllFalse(kFloat, special)))
-      integrate_instead(segment, front, back, special, coarse, depth, before, sum);
+      integrate_instead(segment, front, back, special, coarse, before, sum);
     front = back;
   }
 
@@ -79,10 +79,10 @@ class AntiderivativeIntegrator {
 
   /// Integrates the segments of `special` carefully, from what had been accumulated `before`.
   HWY_INLINE void integrate_instead(const Segments& segment, const Point& front, const Point& back, Mask special,
-                                    Mask coarse, Float depth, const Accumulated& before, Accumulated& sum) const {
+                                    Mask coarse, const Accumulated& before, Accumulated& sum) const {
     Accumulated other = before;
     if (!hn::AllFalse(kFloat, coarse)) integrate_exactly(segment, coarse, other);
-    integrate_pieces(segment.length, front, back, hn::AndNot(coarse, special), depth, other);
+    integrate_pieces(segment.length, front, back, hn::AndNot(coarse, special), other);
     sum.red = hn::IfThenElse(special, other.red, sum.red);
     sum.green = hn::IfThenElse(special, other.green, sum.green);
     sum.blue = hn::IfThenElse(special, other.blue, sum.blue);
@@ -168,33 +168,46 @@ class AntiderivativeIntegrator {
     return hn::RebindMask(kFloat, hn::Ne(hn::GatherIndex(kInt, table_.is_coarse.data(), node_at(at)), hn::Zero(kInt)));
   }
 
-  /// Cuts the segments of `lanes` into equal pieces, as many as the tolerance asks for, and composites them.
-  HWY_NOINLINE void integrate_pieces(Float length, const Point& front, const Point& back, Mask lanes, Float depth,
-                                     Accumulated& sum) const {
-    // Pieces: dc (tau / n)^2 / 12 <= tolerance for the piece in which the colour may change at once.
-    const float* variation = table_.color_variation.data();
-    const Float change =
-        hn::Min(constant(1.0f), hn::Abs(hn::Sub(hn::GatherIndex(kFloat, variation, node_at(back.position)),
-                                                hn::GatherIndex(kFloat, variation, node_at(front.position)))));
-    const Float span = hn::Sub(back.position, front.position);
-    Float wanted = hn::Mul(depth, hn::Sqrt(hn::Div(change, constant(split_threshold_))));
-    wanted = hn::IfThenElse(hn::Gt(wanted, constant(1.0f)), wanted, constant(1.0f));
-    const Float pieces = hn::IfThenElse(lanes, hn::Ceil(hn::Min(wanted, constant(4096.0f))), constant(1.0f));
-    const Float share = hn::Div(constant(1.0f), pieces);
-    const Float piece_length = hn::Mul(length, share);
-    const Float step = hn::Mul(span, share);
+  /// Colour variation up to a position.
+  HWY_INLINE Float variation_at(Float at) const {
+    return hn::GatherIndex(kFloat, table_.color_variation.data(), node_at(hn::Add(at, constant(0.5f))));
+  }
 
+  /// Composites the segments of `lanes` in pieces, each as long as the tolerance allows: dc tau^2 / 12, seen through
+  /// what lies before it. A piece that errs by more is halved, one that passes is followed by one twice as long.
+  HWY_NOINLINE void integrate_pieces(Float length, const Point& front, const Point& back, Mask lanes,
+                                     Accumulated& sum) const {
+    const Float one = constant(1.0f);
+    const Float span = hn::Sub(back.position, front.position);
+    // One node is fine enough: the colour is nearly linear there.
+    const Float shortest = hn::Div(one, hn::Max(hn::Abs(span), one));
     Point at = front;
+    Float variation = variation_at(front.position);
+    Float t = constant(0.0f), step = one;
     Mask active = lanes;
-    for (Float k = constant(1.0f); !hn::AllFalse(kFloat, active); k = hn::Add(k, constant(1.0f))) {
-      const Mask last = hn::Ge(k, pieces);
-      const Point next = point_at(hn::IfThenElse(last, back.position, multiply_add(step, k, front.position)));
+    while (!hn::AllFalse(kFloat, active)) {
+      const Mask last = hn::Ge(hn::Add(t, step), one);
+      const Float next_t = hn::IfThenElse(last, one, hn::Add(t, step));
+      const Point next = point_at(hn::IfThenElse(last, back.position, multiply_add(span, next_t, front.position)));
+      const Float next_variation = variation_at(next.position);
       Float integrals[4];
-      integrate_anywhere(at, next, hn::IfThenElseZero(active, piece_length), integrals);
+      integrate_anywhere(at, next, hn::IfThenElseZero(active, hn::Mul(length, hn::Sub(next_t, t))), integrals);
+
+      const Float depth = integrals[0];
+      const Float change = hn::Min(one, hn::Abs(hn::Sub(next_variation, variation)));
+      const Float error = hn::Mul(hn::Mul(hn::Mul(depth, depth), change), sum.transmittance);
+      const Mask fine = hn::Or(hn::Le(error, constant(split_threshold_)), hn::Le(step, shortest));
+      const Mask accepted = hn::And(active, fine);
+      for (Float& integral : integrals) integral = hn::IfThenElseZero(accepted, integral);
       composite_piece(integrals[0], integrals + 1, absorbed_ratio(integrals[0]), sum);
-      at = next;
+
+      replace_front(accepted, next, at);
+      variation = hn::IfThenElse(accepted, next_variation, variation);
+      t = hn::IfThenElse(accepted, next_t, t);
+      step = hn::Mul(step, hn::IfThenElse(accepted, constant(2.0f), constant(0.5f)));
       // What comes after a millionth of the light has no colour to add.
-      active = hn::AndNot(last, hn::And(active, hn::Gt(sum.transmittance, constant(1e-6f))));
+      const Mask done = hn::And(accepted, hn::Or(last, hn::Le(sum.transmittance, constant(1e-6f))));
+      active = hn::AndNot(done, active);
     }
   }
 
@@ -276,8 +289,7 @@ class GentleAntiderivativeIntegrator {
     composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
     if (HWY_UNLIKELY(!hn::AllFalse(kFloat, special)))
       precise_.integrate_instead(segment, precise_.front_at(segment.scalar_front),
-                                 precise_.front_at(segment.scalar_back), special, hn::FirstN(kFloat, 0), depth, before,
-                                 sum);
+                                 precise_.front_at(segment.scalar_back), special, hn::FirstN(kFloat, 0), before, sum);
 
     // The front stays where it is while the scalar is flat, so that nothing is lost to rounding.
     front.node = hn::IfThenElse(flat, front.node, back);

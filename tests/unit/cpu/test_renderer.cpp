@@ -1,0 +1,102 @@
+#include "tests/unit/cpu/test_mesh.h"
+#include "tetravox/error.h"
+#include "tetravox/render.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+namespace tetravox {
+namespace {
+
+/// Gentle: the extinction grows slowly. Steep: shells a hundredth of the range thick, and a step.
+OpticalFunction make_gentle() {
+  return {{{0.0, 0.1, {0.1, 0.2, 0.9}}, {0.5, 0.6, {0.9, 0.8, 0.2}}, {1.0, 1.5, {1.0, 0.2, 0.1}}}};
+}
+OpticalFunction make_steep() {
+  return {{{0.0, 0.0, {0, 0, 0}},
+           {0.30, 0.0, {1, 0, 0}},
+           {0.31, 40.0, {1, 0, 0}},
+           {0.32, 0.0, {0, 1, 0}},
+           {0.7, 0.0, {0, 0, 1}},
+           {0.7, 3.0, {0, 0, 1}},
+           {1.0, 3.0, {1, 1, 1}}}};
+}
+const Camera kCamera{{2.0, -4.0, 1.5}, {0, 0, 0}, {0, 0, 1}, 30.0, {}};
+
+class SmallPictures : public testing::Test {
+ protected:
+  PreparedMesh mesh_ = cpu::make_test_mesh("sphere");
+
+  Image draw(const OpticalFunction& function, RenderSettings settings, RenderStatistics* statistics = nullptr) {
+    settings.width = 75;
+    settings.height = 61;
+    Renderer renderer(mesh_);
+    renderer.set_transfer_function(function);
+    return renderer.render(kCamera, settings, statistics);
+  }
+};
+
+TEST_F(SmallPictures, AreTheSameBytesForAnyInstructionSetAndNumberOfThreads) {
+  for (const OpticalFunction& function : {make_gentle(), make_steep()})
+    for (const Integrator integrator : {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kPost}) {
+      RenderSettings settings;
+      settings.integrator = integrator;
+      const Image expected = draw(function, settings);
+      for (const std::string& name : instruction_sets())
+        for (const int threads : {1, 2, 3}) {
+          settings.instruction_set = name;
+          settings.threads = threads;
+          EXPECT_EQ(draw(function, settings).pixels, expected.pixels)
+              << name_of(integrator) << " " << name << " " << threads;
+        }
+    }
+}
+
+TEST_F(SmallPictures, CountSegmentsAndRays) {
+  RenderStatistics statistics;
+  draw(make_gentle(), {}, &statistics);
+  EXPECT_GT(statistics.rays, 500u);
+  EXPECT_GT(statistics.segments, statistics.rays);
+  EXPECT_EQ(statistics.stopped_rays, 0u);
+  EXPECT_EQ(statistics.instruction_set, instruction_sets().front());
+}
+
+TEST_F(SmallPictures, AgreeBetweenIntegrators) {
+  RenderSettings settings;
+  for (const OpticalFunction& function : {make_gentle(), make_steep()}) {
+    settings.integrator = Integrator::kPartial;
+    const Image exact = draw(function, settings);
+    settings.integrator = Integrator::kAntiderivative;
+    const Image image = draw(function, settings);
+    for (std::size_t i = 0; i < exact.pixels.size(); ++i) EXPECT_NEAR(image.pixels[i], exact.pixels[i], 2e-3) << i;
+  }
+}
+
+TEST_F(SmallPictures, StopWhenCancelled) {
+  const std::atomic<bool> cancelled{true};
+  Renderer renderer(mesh_);
+  renderer.set_transfer_function(make_gentle());
+  EXPECT_THROW(renderer.render(kCamera, {}, nullptr, {.report = {}, .cancelled = &cancelled}), Error);
+}
+
+TEST_F(SmallPictures, NeedSensibleSettings) {
+  const auto fails = [&](auto change) {
+    RenderSettings settings;
+    change(settings);
+    Renderer renderer(mesh_);
+    renderer.set_transfer_function(make_gentle());
+    EXPECT_THROW(renderer.render(kCamera, settings), Error);
+  };
+  fails([](RenderSettings& s) { s.width = 0; });
+  fails([](RenderSettings& s) { s.height = kLargestResolution + 1; });
+  fails([](RenderSettings& s) { s.samples = 0; });
+  fails([](RenderSettings& s) { s.tolerance = 0.0; });
+  fails([](RenderSettings& s) { s.threads = -1; });
+  fails([](RenderSettings& s) { s.instruction_set = "MMX"; });
+  Renderer renderer(mesh_);
+  EXPECT_THROW(renderer.render(kCamera, {}), Error) << "no transfer function yet";
+}
+
+}  // namespace
+}  // namespace tetravox
