@@ -23,6 +23,7 @@ build libpugixml-dev        reader of PVD collections (XML)
 build libpng-dev            PNG pictures
 build libopenexr-dev        EXR pictures
 test  libgtest-dev          unit tests (GoogleTest)
+test  libhdf5-dev           VTKHDF files made by the tests (HDF5)
 test  clang-14              fuzz tests (libFuzzer)
 test  libclang-rt-14-dev    fuzz tests (runtime)
 test  clang-format-14       check of the formatting

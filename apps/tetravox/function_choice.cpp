@@ -81,7 +81,7 @@ Histogram collect_bins(const Histogram& fine, const ValueRange& range, bool use_
     if (!use_logarithm) return (value - range.min) / (range.max - range.min);
     return value > 0.0 ? std::log(value / range.min) / std::log(range.max / range.min) : -1.0;
   };
-  Histogram result{range, std::vector<double>(kBins, 0.0)};
+  Histogram result{range, std::vector<double>(kBins, 0.0), fine.unit_distance};
   const double width = (fine.range.max - fine.range.min) / static_cast<double>(fine.counts.size());
   for (std::size_t i = 0; i < fine.counts.size(); ++i) {
     // Spread each count evenly over the bins that it touches.
@@ -103,8 +103,9 @@ TransferFunction make_default_function(const FunctionOptions& options, const Pre
   const ValueRange range = range_of(options, mesh);
   if (!options.range && !options.use_logarithm)
     return make_default_transfer_function(make_histogram(mesh, kBins), options.invert);
-  if (!(range.min < range.max)) return make_default_transfer_function({range, {1.0}}, options.invert);
   const Histogram fine = make_histogram(mesh, kFineBins);
+  if (!(range.min < range.max))
+    return make_default_transfer_function({range, {1.0}, fine.unit_distance}, options.invert);
   Histogram histogram = collect_bins(fine, range, options.use_logarithm);
   if (!options.use_logarithm) return make_default_transfer_function(histogram, options.invert);
   // Equal bins of the logarithm: the function is made along it, then stretched over the values.

@@ -35,7 +35,7 @@ struct RenderSettings {
   int height = 512;
   Source source = Source::kWalk;
   Integrator integrator = Integrator::kAntiderivative;
-  double tolerance = 2.5e-4;                ///< error in colour that one segment may add (antiderivative)
+  double tolerance = 5e-5;              ///< error in colour that one segment may add (antiderivative)
   int samples = 8;                        ///< samples a segment (post), in [1, 4096]
   bool use_early_ray_termination = true;  ///< stop a ray when no 8-bit pixel over any background can change
   int threads = 0;                        ///< 0: all cores

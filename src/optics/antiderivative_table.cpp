@@ -279,7 +279,9 @@ void build_antiderivative_table(const OpticalFunction& function, const ScalarMap
   table.nodes_per_scalar = static_cast<float>(map.scale * count / (covered.max - covered.min));
   fill_nodes(function, covered, longest, table);
   mark_control_points(function, covered, longest, table);
-  table.has_coarse = std::find(table.is_coarse.begin(), table.is_coarse.end(), 1) != table.is_coarse.end();
+  table.coarse_before.assign(1, 0);
+  for (const std::int32_t marked : table.is_coarse) table.coarse_before.push_back(table.coarse_before.back() + marked);
+  table.has_coarse = table.coarse_before.back() > 0;
 
   const bool starts_here = covered.min <= function.points.front().value;
   const Density below =

@@ -43,7 +43,8 @@ struct AntiderivativeTable {
   std::vector<float> color_variation;
   /// [last_node + 1]: 1 where the density is not nearly linear up to the next node.
   std::vector<std::int32_t> is_coarse;
-  bool has_coarse = false;  ///< whether any is
+  std::vector<std::int32_t> coarse_before;  ///< [last_node + 2]: how many of the nodes below are marked so
+  bool has_coarse = false;                  ///< whether any is
   /// Whether scalars may be rounded to nodes, and segments no longer than kFlatNodes read one density, without the
   /// picture changing by more than `kGentleError`.
   bool is_gentle = false;

@@ -22,7 +22,8 @@ namespace HWY_NAMESPACE {
 /// alpha is exact. The emission is taken as spread like the extinction: C = mean colour * (1 - exp(-tau)). Where the
 /// colour changes by dc within the segment that errs by up to dc tau^2 / 12 (first term of the expansion in tau), so
 /// the segment is cut into pieces wherever that exceeds the tolerance. Where a segment ends at a step of the function,
-/// or in a feature finer than the table's nodes, it is integrated from control point to control point.
+/// or in a feature finer than the table's nodes, or passes one and is to be cut, it is integrated from control point to
+/// control point.
 class AntiderivativeIntegrator {
  public:
   /// The function at a scalar: antiderivatives in fixed point, densities rho, rho * colour.
@@ -81,6 +82,8 @@ class AntiderivativeIntegrator {
   HWY_INLINE void integrate_instead(const Segments& segment, const Point& front, const Point& back, Mask special,
                                     Mask coarse, const Accumulated& before, Accumulated& sum) const {
     Accumulated other = before;
+    // What is to be cut into pieces must not be finer than the table, either.
+    if (table_.has_coarse) coarse = hn::Or(coarse, hn::And(special, passes_coarse(front.position, back.position)));
     if (!hn::AllFalse(kFloat, coarse)) integrate_exactly(segment, coarse, other);
     integrate_pieces(segment.length, front, back, hn::AndNot(coarse, special), other);
     sum.red = hn::IfThenElse(special, other.red, sum.red);
@@ -168,6 +171,13 @@ class AntiderivativeIntegrator {
     return hn::RebindMask(kFloat, hn::Ne(hn::GatherIndex(kInt, table_.is_coarse.data(), node_at(at)), hn::Zero(kInt)));
   }
 
+  /// Whether the table is too coarse anywhere between two positions.
+  HWY_INLINE Mask passes_coarse(Float a, Float b) const {
+    const std::int32_t* before = table_.coarse_before.data();
+    const Int low = node_at(hn::Min(a, b)), high = hn::Add(node_at(hn::Max(a, b)), hn::Set(kInt, 1));
+    return hn::RebindMask(kFloat, hn::Ne(hn::GatherIndex(kInt, before, low), hn::GatherIndex(kInt, before, high)));
+  }
+
   /// Colour variation up to a position.
   HWY_INLINE Float variation_at(Float at) const {
     return hn::GatherIndex(kFloat, table_.color_variation.data(), node_at(hn::Add(at, constant(0.5f))));
@@ -213,8 +223,12 @@ class AntiderivativeIntegrator {
 
   /// From control point to control point, in pieces so thin that self-attenuation is within the tolerance.
   HWY_NOINLINE void integrate_exactly(const Segments& segment, Mask lanes, Accumulated& sum) const {
-    const float deepest = std::sqrt(split_threshold_);
-    for_each_linear_piece(points_, segment, lanes, deepest, sum.transmittance,
+    const auto find_deepest = [&](const Record& a, const Record& b) {
+      const Float green_blue = hn::Max(hn::AbsDiff(a.z, b.z), hn::AbsDiff(a.w, b.w));
+      const Float change = hn::Max(hn::Max(hn::AbsDiff(a.y, b.y), green_blue), constant(1e-6f));
+      return hn::Sqrt(hn::Div(constant(split_threshold_), change));
+    };
+    for_each_linear_piece(points_, segment, lanes, find_deepest, sum.transmittance,
                           [&](const Record& a, const Record& b, Float length) {
                             const Float depth = hn::Mul(hn::Mul(constant(0.5f), hn::Add(a.x, b.x)), length);
                             const auto emission = [&](Float c0, Float c1) {

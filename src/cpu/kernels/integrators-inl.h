@@ -39,8 +39,10 @@ class PartialIntegrator : public WithoutFront {
       : points_(*tables.control_points), absorbed_(tables.transparency->absorbed.data()) {}
 
   HWY_INLINE void integrate(const Segments& segment, Front&, Accumulated& sum) const {
-    for_each_linear_piece(points_, segment, hn::Gt(segment.length, constant(0.0f)), kDeepest, sum.transmittance,
-                          [&](const Record& a, const Record& b, Float length) { composite_linear(a, b, length, sum); });
+    for_each_linear_piece(
+        points_, segment, hn::Gt(segment.length, constant(0.0f)),
+        [](const Record&, const Record&) { return constant(kDeepest); }, sum.transmittance,
+        [&](const Record& a, const Record& b, Float length) { composite_linear(a, b, length, sum); });
   }
 
  private:

@@ -44,7 +44,7 @@ struct IntegratorTables {
   const optics::AntiderivativeTable* antiderivative = nullptr;
   const optics::ControlPointTable* control_points = nullptr;
   const optics::TransparencyTable* transparency = nullptr;
-  float tolerance = 2.5e-4f;
+  float tolerance = 5e-5f;
   int samples = 8;
 };
 

@@ -74,10 +74,11 @@ class ControlPoints {
 };
 
 /// Goes along a segment from control point to control point and calls `composite(front, back, length)` for each piece,
-/// on which extinction and colour are linear. A piece is no deeper than `deepest` (optical depth).
-template <class Composite>
-HWY_INLINE void for_each_linear_piece(const ControlPoints& points, const Segments& segment, Mask lanes, float deepest,
-                                      const Float& transmittance, const Composite& composite) {
+/// on which extinction and colour are linear. A piece is no deeper than `find_deepest(front, goal)` (optical depth).
+template <class FindDeepest, class Composite>
+HWY_INLINE void for_each_linear_piece(const ControlPoints& points, const Segments& segment, Mask lanes,
+                                      const FindDeepest& find_deepest, const Float& transmittance,
+                                      const Composite& composite) {
   const Float one = constant(1.0f);
   const Float span = hn::Sub(segment.scalar_back, segment.scalar_front);
   const Mask rising = hn::Ge(span, constant(0.0f));
@@ -90,15 +91,16 @@ HWY_INLINE void for_each_linear_piece(const ControlPoints& points, const Segment
   Float t = constant(0.0f), scalar = segment.scalar_front;
   Mask active = hn::And(lanes, hn::Gt(segment.length, constant(0.0f)));
   while (!hn::AllFalse(kFloat, active)) {
-    // Aim at the next control point or the end, and no further than `deepest`.
+    // Aim at the next control point or the end, and no further than is allowed.
     const Float border = points.start_of(hn::Add(interval, border_side));
     const Float border_t = hn::Max(hn::Div(hn::Sub(border, segment.scalar_front), divisor), t);
     const Mask to_end = hn::Or(level, hn::Ge(border_t, one));
     const Float goal_t = hn::IfThenElse(to_end, one, border_t);
     const Float goal = hn::IfThenElse(to_end, segment.scalar_back, border);
     const Record front = points.eval(interval, scalar);
-    const Float steepest = hn::Max(front.x, points.eval(interval, goal).x);
-    const Float reach = hn::Div(constant(deepest), hn::Max(hn::Mul(steepest, segment.length), constant(1e-30f)));
+    const Record ahead = points.eval(interval, goal);
+    const Float depth = hn::Mul(hn::Max(front.x, ahead.x), segment.length);
+    const Float reach = hn::Div(find_deepest(front, ahead), hn::Max(depth, constant(1e-30f)));
     const Mask arrives = hn::Le(goal_t, hn::Add(t, reach));
     const Float next_t = hn::IfThenElse(arrives, goal_t, hn::Add(t, reach));
     const Float next = hn::IfThenElse(arrives, goal, multiply_add(span, next_t, segment.scalar_front));

@@ -8,6 +8,7 @@
 #endif
 
 #include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/lanes-inl.h"
 #include "src/cpu/kernels/rasterize-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
@@ -21,42 +22,6 @@ namespace HWY_NAMESPACE {
 
 /// Below this transmittance a ray is looked at for early termination.
 constexpr float kDim = 1e-4f;
-
-/// The rays of a vector between two rounds of filling, in memory.
-///
-/// The triangle (a, b, c) is the face that the ray is about to enter through; its vertices are sheared so that the
-/// ray is the z axis: x' = x - slope * z - offset. Seen along the ray it runs counter-clockwise: the products
-/// a' x b', b' x c', c' x a' are not negative, and are the (unscaled) barycentric weights of c, a, b.
-template <class Integrator>
-struct Lanes {
-  HWY_ALIGN std::uint32_t id[3][kLanes];
-  HWY_ALIGN float x[3][kLanes], y[3][kLanes], z[3][kLanes], scalar[3][kLanes];
-  HWY_ALIGN float weight[3][kLanes];
-  HWY_ALIGN std::uint32_t cell[kLanes];
-  HWY_ALIGN float z_front[kLanes], scalar_front[kLanes];
-  HWY_ALIGN std::int32_t front_node[kLanes];  ///< what the integrator keeps of the front; -1: nothing yet
-  HWY_ALIGN float red[kLanes], green[kLanes], blue[kLanes], transmittance[kLanes];
-  HWY_ALIGN float x_offset[kLanes], x_slope[kLanes], y_offset[kLanes], y_slope[kLanes];
-  HWY_ALIGN float world_per_z[kLanes];    ///< length of the ray for one unit of z
-  HWY_ALIGN float z_checked[kLanes];      ///< z_front when progress was last checked
-  HWY_ALIGN std::uint32_t alive[kLanes];  ///< all bits set while the ray is in a cell
-  std::uint32_t ray[kLanes];              ///< index into TileRays::rays, or kNoRay
-  std::uint32_t next_entry[kLanes];
-};
-
-constexpr std::uint32_t kNoRay = 0xFFFFFFFFu;
-
-/// The same, in registers.
-template <class Integrator>
-struct State {
-  Uint id[3];
-  Float x[3], y[3], z[3], scalar[3], weight[3];
-  Uint cell;
-  Float z_front, scalar_front;
-  Accumulated sum;
-  typename Integrator::Front front;
-  Mask alive;
-};
 
 template <class Integrator, bool kCellData>
 class Walker {
@@ -387,7 +352,7 @@ class Walker {
   const WalkJob& job_;
   const FrameMesh& mesh_;
   Integrator integrator_;
-  mutable Lanes<Integrator> lanes_;
+  mutable Lanes lanes_;
   std::size_t next_ray_ = 0;
   std::uint64_t steps_ = 0;
   WalkStatistics statistics_;

@@ -92,6 +92,9 @@ SharedHeader make_header(const std::vector<Block>& blocks, const Description& de
   return header;
 }
 
+/// Name of the array that stands in where a file has none; no file's own array can bear it, since then there is one.
+constexpr const char* kUniformArray = "(uniform)";
+
 /// The memory file at its full size.
 std::byte* map_memory(std::uint64_t bytes, const ReaderRequest& request) {
   const std::uint64_t limit = request.options.memory_limit;
@@ -117,7 +120,25 @@ void hand_over(const std::vector<Block>& blocks, const Description& description,
                         reinterpret_cast<std::uint64_t*>(memory + header.cell_offsets.offset),
                         reinterpret_cast<std::uint32_t*>(memory + header.connectivity.offset)};
   for (const Block& block : blocks) write_block(block, mesh);
-  write_scalars(blocks, *array, description.component, reinterpret_cast<double*>(memory + header.scalars.offset));
+  double* scalars = reinterpret_cast<double*>(memory + header.scalars.offset);
+  if (array->name == kUniformArray)
+    std::fill_n(scalars, description.info.cell_count, 1.0);
+  else
+    write_scalars(blocks, *array, description.component, scalars);
+}
+
+/// A mesh without arrays is drawn as a homogeneous body: its shape is still worth seeing. Not so an OpenFOAM case, whose
+/// fields are files of their own: VTK passes over damaged ones without a word.
+void add_uniform_array(DatasetInfo& info) {
+  if (!info.arrays.empty() || info.cell_count == 0 || info.format.starts_with("OpenFOAM")) return;
+  ArrayInfo uniform;
+  uniform.name = kUniformArray;
+  uniform.association = Association::kCell;
+  uniform.type = "float64";
+  uniform.magnitude_range = {1.0, 1.0};
+  uniform.component_ranges = {uniform.magnitude_range};
+  info.arrays.push_back(uniform);
+  info.notes.push_back("no point or cell arrays: drawn as a homogeneous body");
 }
 
 /// The array to draw; throws where there is no cell or no array.
@@ -168,6 +189,7 @@ void run(const ReaderRequest& request) {
   const std::vector<Block> blocks = examine_blocks(contents, request.file, info);
   add_notes(contents, info);
   info.arrays = examine_arrays(blocks, request.file, info.notes);
+  add_uniform_array(info);
   send_progress(0.93);
   const ArrayInfo* array = request.options.only_info ? nullptr : &choose_field(request, contents, description);
   hand_over(blocks, description, array, request);
