@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/.."
 program="${1:-build/release}/bin/test_golden"
 if [ ! -x "$program" ]; then
-  echo "approve_golden.sh: there is no $program: build it first (make build, or name another build directory)" >&2
+  echo "approve_golden.sh: there is no $program: build it first (make test, or name another build directory)" >&2
   exit 1
 fi
 TETRAVOX_APPROVE_GOLDEN=1 "$program" --gtest_brief=1

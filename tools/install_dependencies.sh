@@ -29,7 +29,6 @@ test  libclang-rt-14-dev    fuzz tests (runtime)
 test  clang-format-14       check of the formatting
 test  clang-tidy-14         static analysis
 test  python3               check of the include rules
-test  python3-numpy         pictures compared in tests
 bench python3               the driver of the benchmark
 bench python3-numpy         errors against exact pictures
 bench python3-vtk9          the peers: VTK ray casting and projected tetrahedra

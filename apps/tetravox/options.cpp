@@ -171,10 +171,11 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.integrator, named(integrator_from_name)));
   add(app, "--samples", "N", "Samples a segment of the integrator post",
       store(method.samples, integer(1, kLargestSampleCount)));
-  add(app, "--tolerance", "ERROR", "Error in colour that a segment may add, in (0, 1]",
+  add(app, "--tolerance", "ERROR", "Error in colour that a segment may add, in [1e-7, 1] (default: 5e-5)",
       [&method](const std::string& option, const std::string& text) {
         method.tolerance = parse_positive_number(option, text);
-        if (*method.tolerance > 1.0) throw UsageError(option + ": '" + text + "' is not a number in (0, 1]");
+        if (*method.tolerance < kSmallestTolerance || *method.tolerance > 1.0)
+          throw UsageError(option + ": '" + text + "' is not a number in [1e-7, 1]");
       });
   add(app, "--early-ray-termination", "on|off", "Stop rays when no 8-bit pixel can change any more (default: on)",
       store(method.use_early_ray_termination, parse_switch));

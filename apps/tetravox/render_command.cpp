@@ -11,6 +11,8 @@
 #include "tetravox/io.h"
 #include "tetravox/render.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -82,7 +84,16 @@ std::string choose_output(const RenderOptions& options, const SceneInput& input)
   std::error_code ignored;
   if (options.output.empty() && std::filesystem::equivalent(output, options.input.input, ignored))
     throw UsageError("--output: name the picture, the default would replace the input " + output);
-  for (const std::string& path : {output, options.save_scene, options.statistics}) require_directory(path);
+  const std::array<std::string, 3> written{output, options.save_scene, options.statistics};
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    if (written[i].empty()) continue;
+    require_directory(written[i]);
+    const bool is_input = i > 0 && std::filesystem::equivalent(written[i], options.input.input, ignored);
+    const bool is_twice = std::count(written.begin(), written.end(), written[i]) > 1;
+    if (is_input || is_twice)
+      throw UsageError("'" + written[i] +
+                       "' would be written over: give picture, scene and statistics names of their own");
+  }
   return output;
 }
 

@@ -20,7 +20,7 @@ namespace tetravox {
 struct ReadOptions {
   ArrayRequest array;
   TimeRequest time;
-  std::string grid_file;           ///< PLOT3D: solution (Q) file that goes with the grid
+  std::string grid_file;           ///< PLOT3D: the solution (Q) file that goes with the grid at `path`
   double timeout = 600.0;          ///< seconds that the reader may take
   std::uint64_t memory_limit = 0;  ///< bytes that the reader may take; 0: what the machine has free
   bool only_info = false;          ///< leave `Dataset::mesh` empty

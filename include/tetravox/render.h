@@ -29,13 +29,14 @@ enum class Integrator {
 };
 
 inline constexpr int kLargestResolution = 16384;
+inline constexpr double kSmallestTolerance = 1e-7;
 
 struct RenderSettings {
   int width = 512;  ///< pixels, in [1, kLargestResolution]
   int height = 512;
   Source source = Source::kWalk;
   Integrator integrator = Integrator::kAntiderivative;
-  double tolerance = 5e-5;              ///< error in colour that one segment may add (antiderivative)
+  double tolerance = 5e-5;                ///< error in colour that one segment may add (antiderivative)
   int samples = 8;                        ///< samples a segment (post), in [1, 4096]
   bool use_early_ray_termination = true;  ///< stop a ray when no 8-bit pixel over any background can change
   int threads = 0;                        ///< 0: all cores
@@ -75,7 +76,8 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// One pass over a 1D table, under a millisecond.
-  /// @throws Error (kInvalidArgument) as `make_optical_function` does.
+  /// Extinctions beyond what is opaque within a millionth of the mesh's diagonal are taken as that.
+  /// @throws Error (kInvalidArgument) for no points, values that descend or are not finite, negative extinctions.
   void set_transfer_function(const OpticalFunction& function);
 
   /// The picture. The same bytes for any number of threads, on every run and with every instruction set.

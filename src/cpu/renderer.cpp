@@ -12,6 +12,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -49,6 +50,28 @@ void validate_settings(const RenderSettings& settings) {
 
 double diagonal(const std::array<ValueRange, 3>& bounds) {
   return std::hypot(bounds[0].max - bounds[0].min, bounds[1].max - bounds[1].min, bounds[2].max - bounds[2].min);
+}
+
+void validate_function(const OpticalFunction& function) {
+  const auto fail = [](const std::string& message) { throw Error(ErrorCode::kInvalidArgument, message); };
+  if (function.points.empty()) fail("the transfer function has no points");
+  for (std::size_t i = 0; i < function.points.size(); ++i) {
+    const OpticalPoint& point = function.points[i];
+    const std::string name = "point " + std::to_string(i) + " of the transfer function";
+    if (!std::isfinite(point.value)) fail(name + ": the value is not finite");
+    if (i > 0 && point.value < function.points[i - 1].value) fail(name + ": values must not descend");
+    if (!(point.extinction >= 0.0)) fail(name + ": the extinction is negative or not a number");
+    for (const double channel : point.color)
+      if (!(channel >= 0.0 && channel <= 1.0)) fail(name + ": colours lie in [0, 1]");
+  }
+}
+
+/// The function with extinctions that float can work with: what is opaque within a millionth of the diagonal is opaque.
+OpticalFunction limit_extinction(const OpticalFunction& function, double longest) {
+  const double largest = 1e6 / std::max(longest, 1e-300);
+  OpticalFunction limited = function;
+  for (OpticalPoint& point : limited.points) point.extinction = std::min(point.extinction, largest);
+  return limited;
 }
 
 auto choose_walk(const cpu::Kernels& kernels, Association association, Integrator integrator, bool is_gentle) {
@@ -133,8 +156,9 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-void Renderer::set_transfer_function(const OpticalFunction& function) {
-  if (function.points.empty()) throw Error(ErrorCode::kInvalidArgument, "the transfer function has no points");
+void Renderer::set_transfer_function(const OpticalFunction& asked) {
+  validate_function(asked);
+  const OpticalFunction function = limit_extinction(asked, diagonal(state_->mesh.bounds));
   const optics::ScalarMap map{state_->mesh.scalar_offset, state_->mesh.scalar_scale};
   state_->control_points = optics::build_control_point_table(function, map);
   if (state_->mesh.association == Association::kPoint)
@@ -177,8 +201,9 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
         if (!frame.bins.faces_of(tile).empty()) {
           cpu::collect_rays(kernels, frame.mesh, frame.rays.grid, frame.bins, tile, frame.first_eye_face,
                             frame.camera.is_orthographic, scratch);
-          const cpu::WalkStatistics walked = walk({&frame.mesh, &frame.rays.grid, &tables, &scratch.rays,
-                                                   image.pixels.data(), settings.use_early_ray_termination});
+          const cpu::WalkStatistics walked =
+              walk({&frame.mesh, &frame.rays.grid, &tables, &scratch.rays, image.pixels.data(),
+                    settings.use_early_ray_termination, progress.cancelled});
           segments += walked.segments;
           stopped_rays += walked.stopped_rays;
           rays += scratch.rays.rays.size();

@@ -103,7 +103,8 @@ void read_render(const JsonPlace& place, RenderSettings& settings) {
     settings.integrator = at_place(*integrator, [&] { return integrator_from_name(integrator->string()); });
   if (const auto tolerance = place.find("tolerance")) {
     settings.tolerance = tolerance->number();
-    if (!(settings.tolerance > 0.0 && settings.tolerance <= 1.0)) tolerance->fail("expected a number in (0, 1]");
+    if (!(settings.tolerance >= kSmallestTolerance && settings.tolerance <= 1.0))
+      tolerance->fail("expected a number in [1e-7, 1]");
   }
   if (const auto samples = place.find("samples"))
     settings.samples = static_cast<int>(samples->integer(1, kLargestSampleCount));

@@ -9,6 +9,7 @@
 #include "src/optics/transparency_table.h"
 #include "tetravox/mesh.h"
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -92,6 +93,7 @@ struct WalkJob {
   const TileRays* tile = nullptr;
   float* pixels = nullptr;  ///< [height][width][4], premultiplied
   bool use_early_ray_termination = true;
+  const std::atomic<bool>* cancelled = nullptr;  ///< once true, the tile is given up
 };
 
 /// The kernels of one instruction set. All are safe to call from many threads.

@@ -101,7 +101,8 @@ HWY_INLINE void for_each_linear_piece(const ControlPoints& points, const Segment
     const Record ahead = points.eval(interval, goal);
     const Float depth = hn::Mul(hn::Max(front.x, ahead.x), segment.length);
     const Float reach = hn::Div(find_deepest(front, ahead), hn::Max(depth, constant(1e-30f)));
-    const Mask arrives = hn::Le(goal_t, hn::Add(t, reach));
+    // A step too small for float would never end: then go all the way.
+    const Mask arrives = hn::Or(hn::Le(goal_t, hn::Add(t, reach)), hn::Le(hn::Add(t, reach), t));
     const Float next_t = hn::IfThenElse(arrives, goal_t, hn::Add(t, reach));
     const Float next = hn::IfThenElse(arrives, goal, multiply_add(span, next_t, segment.scalar_front));
 

@@ -128,10 +128,11 @@ class Walker {
   void write_pixel(std::size_t lane) {
     const TileRays::Ray& ray = job_.tile->rays[lanes_.ray[lane]];
     float* pixel = job_.pixels + 4 * (static_cast<std::size_t>(ray.row) * job_.rays->width + ray.column);
-    pixel[0] = lanes_.red[lane];
-    pixel[1] = lanes_.green[lane];
-    pixel[2] = lanes_.blue[lane];
-    pixel[3] = 1.0f - lanes_.transmittance[lane];
+    // Sums may round past 1 by an ulp.
+    pixel[0] = std::min(lanes_.red[lane], 1.0f);
+    pixel[1] = std::min(lanes_.green[lane], 1.0f);
+    pixel[2] = std::min(lanes_.blue[lane], 1.0f);
+    pixel[3] = std::min(1.0f - lanes_.transmittance[lane], 1.0f);
   }
 
   // ---- between memory and registers
@@ -340,6 +341,10 @@ class Walker {
 
   /// A ray that has not moved for many cells goes round in circles, which only damaged meshes allow: stop it.
   HWY_NOINLINE void stop_stuck_rays(RayState& s) {
+    if (job_.cancelled && job_.cancelled->load(std::memory_order_relaxed)) {
+      give_up(s);
+      return;
+    }
     const Mask stuck = hn::And(s.alive, hn::Le(s.z_front, hn::Load(kFloat, lanes_.z_checked)));
     hn::Store(s.z_front, kFloat, lanes_.z_checked);
     if (hn::AllFalse(kFloat, stuck)) return;
@@ -347,7 +352,14 @@ class Walker {
     s.alive = hn::AndNot(stuck, s.alive);
   }
 
-  static constexpr std::uint64_t kCheckedSteps = 4096;
+  /// Nobody wants the picture any more.
+  void give_up(RayState& s) {
+    forget_entries(s.alive);
+    s.alive = hn::FirstN(kFloat, 0);
+    next_ray_ = job_.tile->rays.size();
+  }
+
+  static constexpr std::uint64_t kCheckedSteps = 1024;
 
   const WalkJob& job_;
   const FrameMesh& mesh_;

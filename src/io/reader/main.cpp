@@ -127,8 +127,8 @@ void hand_over(const std::vector<Block>& blocks, const Description& description,
     write_scalars(blocks, *array, description.component, scalars);
 }
 
-/// A mesh without arrays is drawn as a homogeneous body: its shape is still worth seeing. Not so an OpenFOAM case, whose
-/// fields are files of their own: VTK passes over damaged ones without a word.
+/// A mesh without arrays is drawn as a homogeneous body: its shape is still worth seeing. Not so an OpenFOAM case,
+/// whose fields are files of their own: VTK passes over damaged ones without a word.
 void add_uniform_array(DatasetInfo& info) {
   if (!info.arrays.empty() || info.cell_count == 0 || info.format.starts_with("OpenFOAM")) return;
   ArrayInfo uniform;

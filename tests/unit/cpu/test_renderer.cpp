@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 
 namespace tetravox {
 namespace {
@@ -78,6 +79,30 @@ TEST_F(SmallPictures, StopWhenCancelled) {
   Renderer renderer(mesh_);
   renderer.set_transfer_function(make_gentle());
   EXPECT_THROW(renderer.render(kCamera, {}, nullptr, {.report = {}, .cancelled = &cancelled}), Error);
+}
+
+TEST_F(SmallPictures, AreOpaqueForAnyLargeExtinction) {
+  for (const double extinction : {1e4, 1e30, 1e40, 1e300})
+    for (const Integrator integrator : {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kPost}) {
+      RenderSettings settings;
+      settings.integrator = integrator;
+      const Image image = draw(
+          {{{0.0, extinction, {0, 0, 1}}, {0.5, 0.5 * extinction, {0, 1, 0}}, {1.0, extinction, {1, 0, 0}}}}, settings);
+      EXPECT_GT(image.pixel(37, 30)[3], 0.999f) << extinction << " " << name_of(integrator);
+      for (const float value : image.pixels) EXPECT_TRUE(value >= 0.0f && value <= 1.0f) << value;
+    }
+}
+
+TEST_F(SmallPictures, NeedASensibleFunction) {
+  Renderer renderer(mesh_);
+  const auto fails = [&](const OpticalFunction& function) {
+    EXPECT_THROW(renderer.set_transfer_function(function), Error);
+  };
+  fails({});
+  fails({{{1.0, 1.0, {0, 0, 0}}, {0.0, 1.0, {0, 0, 0}}}});
+  fails({{{0.0, -1.0, {0, 0, 0}}}});
+  fails({{{0.0, std::nan(""), {0, 0, 0}}}});
+  fails({{{0.0, 1.0, {0, 2.0, 0}}}});
 }
 
 TEST_F(SmallPictures, NeedSensibleSettings) {
