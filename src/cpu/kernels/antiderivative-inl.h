@@ -61,9 +61,8 @@ class AntiderivativeIntegrator {
     const Float depth = integrals[0];
     const Float nodes = hn::Abs(hn::Sub(back.position, front.position));
     const Float change = hn::Min(constant(1.0f), hn::Mul(nodes, constant(table_.largest_color_slope)));
-    Mask special =
-        hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), hn::Mul(change, sum.transmittance)), constant(split_threshold_)),
-               hn::Gt(depth, constant(0.25f)));
+    Mask special = hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), change), constant(split_threshold_)),
+                          hn::Gt(depth, constant(0.25f)));
     special = hn::Or(special, hn::Or(outside(back.position), outside(front.position)));
     Mask coarse = hn::FirstN(kFloat, 0);
     if (table_.has_coarse) {
@@ -206,8 +205,7 @@ class AntiderivativeIntegrator {
 
       const Float depth = integrals[0];
       const Float change = hn::Min(one, hn::Abs(hn::Sub(next_variation, variation)));
-      const Float error =
-          hn::Mul(hn::Mul(hn::Mul(depth, depth), hn::Mul(change, sum.transmittance)), sum.transmittance);
+      const Float error = hn::Mul(hn::Mul(hn::Mul(depth, depth), change), sum.transmittance);
       const Mask fine = hn::Or(hn::Le(error, constant(split_threshold_)), hn::Le(step, shortest));
       const Mask accepted = hn::And(active, fine);
       for (Float& integral : integrals) integral = hn::IfThenElseZero(accepted, integral);
@@ -297,9 +295,8 @@ class GentleAntiderivativeIntegrator {
 
     const Float depth = integrals[0];
     const Float change = hn::Min(constant(1.0f), hn::Mul(hn::Abs(node_count), constant(table_.largest_color_slope)));
-    const Mask thick =
-        hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), hn::Mul(change, sum.transmittance)), constant(split_threshold_)),
-               hn::Gt(depth, constant(0.25f)));
+    const Mask thick = hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), change), constant(split_threshold_)),
+                              hn::Gt(depth, constant(0.25f)));
     const Mask special = hn::Or(
         thick, hn::Or(precise_.outside(back_position), precise_.outside(precise_.position(segment.scalar_front))));
     const Accumulated before = sum;

@@ -205,7 +205,7 @@ TEST(SceneFile, SaysWhatIsWrongAndWhere) {
              "view_angle");
   expect_bad(kHead + R"(,"render":{"integrator":"magic"}})", "render.integrator", "antiderivative");
   expect_bad(kHead + R"(,"render":{"source":"magic"}})", "render.source", "walk");
-  expect_bad(kHead + R"(,"render":{"tolerance":0}})", "render.tolerance", "(0, 1]");
+  expect_bad(kHead + R"(,"render":{"tolerance":0}})", "render.tolerance", "[1e-7, 1]");
   expect_bad(kHead + R"(,"render":{"samples":5000}})", "render.samples", "4096");
   expect_bad(kHead + R"(,"render":{"early_ray_termination":1}})", "render.early_ray_termination", "true or false");
   expect_bad(kHead + R"(,"transfer_function":{"points":[{"value":0,"color":[0,0,0]}]}})", "transfer_function.points[0]",
