@@ -110,7 +110,7 @@ std::vector<EyeCell> find_eye_cells(const FrameMesh& mesh, std::span<const Bound
   return cells;
 }
 
-/// Distance from a point to a triangle, or something smaller than `limit` only where that is so.
+/// Distance from a point to a triangle where it is below `limit`; otherwise some number that is not.
 double distance_to_triangle(const Vector3& p, const std::array<Vector3, 3>& t, double limit) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto [low, high] = std::minmax({t[0][axis], t[1][axis], t[2][axis]});

@@ -2,7 +2,7 @@
 
 /// What the vector code is given and what it offers: plain pointers in, no vector type out.
 ///
-/// The kernels are compiled once for each instruction set and chosen at run time (dispatch.cpp). All of them use the
+/// The kernels are compiled once for each instruction set and chosen at run time (kernels.cpp). All of them use the
 /// same operations in the same order, without fused multiply-add, so that every instruction set gives the same bits.
 
 #include "src/optics/antiderivative_table.h"
