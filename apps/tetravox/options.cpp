@@ -171,7 +171,7 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.integrator, named(integrator_from_name)));
   add(app, "--samples", "N", "Samples a segment of the integrator post",
       store(method.samples, integer(1, kLargestSampleCount)));
-  add(app, "--tolerance", "ERROR", "Error in colour that a segment may add, in [1e-7, 1] (default: 5e-5)",
+  add(app, "--tolerance", "ERROR", "Error in colour that the picture may have, in [1e-7, 1] (default: 0.002, half an 8-bit step)",
       [&method](const std::string& option, const std::string& text) {
         method.tolerance = parse_positive_number(option, text);
         if (*method.tolerance < kSmallestTolerance || *method.tolerance > 1.0)

@@ -106,7 +106,7 @@ void override_scene(const RenderOptions& options, Scene& scene) {
   }
   scene.background = options.background.value_or(scene.background);
   const MethodOptions& method = options.method;
-  settings.source = method.source.value_or(settings.source);
+  if (method.source) settings.source = method.source;
   settings.integrator = method.integrator.value_or(settings.integrator);
   settings.samples = method.samples.value_or(settings.samples);
   settings.tolerance = method.tolerance.value_or(settings.tolerance);

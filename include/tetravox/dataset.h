@@ -1,11 +1,13 @@
 #pragma once
 
-/// A mesh of cells with one scalar field, as it stands in a file, and what is known about that file.
+/// A mesh of cells or a regular grid with one scalar field, as it stands in a file, and what is known about that file.
 ///
-/// `MeshData` is a bundle of views: readers hand over shared memory, generators hand over vectors; `storage`
-/// keeps either alive. Nothing is copied on the way to `prepare_mesh` (mesh.h).
+/// `MeshData` and `GridData` are bundles of views: readers hand over shared memory or a mapped file, generators hand
+/// over vectors; `storage` keeps either alive. Nothing is copied on the way to `prepare_mesh` (mesh.h) or
+/// `prepare_grid` (grid.h).
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -53,6 +55,36 @@ struct ValueRange {
   double max = 0.0;
 };
 
+/// Number types of grid values, as they stand in files.
+enum class ScalarType : std::uint8_t {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat32,
+  kFloat64
+};
+
+/// "int8" ... "float64", and back; bytes of one value.
+/// @throws Error (kInvalidArgument) that lists the names there are.
+std::string scalar_type_name(ScalarType type);
+ScalarType scalar_type_from_name(const std::string& name);
+std::size_t scalar_type_size(ScalarType type);
+
+/// The lattice of a grid. Point (i, j, k) lies at origin + direction * (x_i, y_j, z_k), world units, where x_i is
+/// i * spacing[0], or coordinates[0][i] where that axis is uneven; likewise y and z.
+struct GridShape {
+  std::array<std::uint32_t, 3> dimensions{};  ///< lattice points along i, j, k; cells are one fewer
+  std::array<double, 3> origin{};
+  std::array<double, 3> spacing{1, 1, 1};                      ///< positive
+  std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row major, invertible; column a: where axis a points
+  std::array<std::vector<double>, 3> coordinates;  ///< uneven axes: [dimensions[a]], strictly ascending; else empty
+};
+
 /// What is known of one array without holding its values.
 struct ArrayInfo {
   std::string name;
@@ -79,7 +111,8 @@ struct DatasetInfo {
   std::uint64_t point_count = 0;
   std::uint64_t cell_count = 0;  ///< cells to draw
   std::uint64_t block_count = 1;
-  std::vector<std::pair<CellType, std::uint64_t>> cells_by_type;
+  std::optional<GridShape> grid;                                  ///< set for grids, empty for meshes
+  std::vector<std::pair<CellType, std::uint64_t>> cells_by_type;  ///< of a mesh
   LeftOut left_out;
   std::vector<ArrayInfo> arrays;
   std::array<ValueRange, 3> bounds;  ///< world units
@@ -107,10 +140,31 @@ struct MeshData {
   std::size_t cell_count() const { return cell_types.size(); }
 };
 
-/// A mesh together with its summary.
+/// Views of a grid and of the array to draw, in the number type of the file. Immutable; safe to read from many threads.
+struct GridData {
+  GridShape shape;
+  Association association = Association::kPoint;  ///< a value at each lattice point, or one in each cell
+  ScalarType type = ScalarType::kUint8;
+  int components = 1;                 ///< interleaved, in [1, 4]
+  int component = 0;                  ///< the one to draw, or `kMagnitude`
+  std::span<const std::byte> values;  ///< [k][j][i][components], i fastest, this machine's byte order
+  std::string array_name;
+  std::shared_ptr<const void> storage;
+
+  /// How many values there are along i, j, k: the shape's points or cells.
+  std::array<std::size_t, 3> value_dimensions() const {
+    const std::size_t fewer = association == Association::kCell ? 1 : 0;
+    return {shape.dimensions[0] - fewer, shape.dimensions[1] - fewer, shape.dimensions[2] - fewer};
+  }
+};
+
+/// A mesh or a grid together with its summary.
 struct Dataset {
   DatasetInfo info;
   MeshData mesh;
+  GridData grid;
+
+  bool is_grid() const { return info.grid.has_value(); }
 };
 
 /// Which field of a file is wanted. Everything left open is chosen from the data by `choose_array`.
@@ -126,8 +180,11 @@ struct ArrayRequest {
 /// arrays.
 std::size_t choose_array(const DatasetInfo& info, const ArrayRequest& request);
 
-/// Makes an embedded dataset: "sphere", "buckyball" or "duct", with optional "?cells=N" (about N cells).
-/// `name` may carry the prefix "builtin:". Deterministic. Sources and formulas: src/mesh/builtin.cpp.
+/// Makes an embedded dataset: a mesh ("sphere", "buckyball", "duct", with optional "?cells=N": about N cells), or a
+/// grid
+/// ("marschner-lobb", "hydrogen", "turbulence", with optional "?size=N&type=uint8": N^3 points of that number type).
+/// `name` may carry the prefix "builtin:". Deterministic. Sources and formulas: src/mesh/builtin.cpp and
+/// src/grid/builtin.cpp.
 /// @throws Error (kInvalidArgument) that lists the names there are; (kOutOfMemory).
 Dataset make_builtin(const std::string& name);
 /// The same with the array that `request` asks for ("duct" has several).

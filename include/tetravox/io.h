@@ -20,6 +20,7 @@ namespace tetravox {
 struct ReadOptions {
   ArrayRequest array;
   TimeRequest time;
+  RawLayout raw;                   ///< RAW files only
   std::string grid_file;           ///< PLOT3D: the solution (Q) file that goes with the grid at `path`
   double timeout = 600.0;          ///< seconds that the reader may take
   std::uint64_t memory_limit = 0;  ///< bytes that the reader may take; 0: what the machine has free

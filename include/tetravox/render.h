@@ -1,10 +1,11 @@
 #pragma once
 
-/// Prepared mesh + optical function + camera -> picture, on the CPU.
+/// Prepared mesh or grid + optical function + camera -> picture, on the CPU.
 ///
 /// The one-call function is `render`. `Renderer` keeps what can be kept between frames.
 
 #include "tetravox/camera.h"
+#include "tetravox/grid.h"
 #include "tetravox/image.h"
 #include "tetravox/mesh.h"
 #include "tetravox/progress.h"
@@ -12,20 +13,25 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace tetravox {
 
-/// Where segments come from. `kWalk`: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003).
-enum class Source { kWalk };
+/// Where segments come from.
+enum class Source {
+  kWalk,  ///< meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)
+  kMarch  ///< grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)
+};
 
 /// What turns a segment into colour and opacity.
 enum class Integrator {
   kAntiderivative,  ///< tables of antiderivatives, split where the error estimate asks (default)
   kPartial,         ///< exact for piecewise linear functions (Moreland and Angel 2004; Espinha and Celes 2005)
-  kPost             ///< N point samples a segment, for comparison
+  kPost,            ///< post-classification: N point samples a segment, for comparison
+  kPre              ///< pre-classification: colours and extinctions at the values, interpolated; for comparison
 };
 
 inline constexpr int kLargestResolution = 16384;
@@ -34,10 +40,12 @@ inline constexpr double kSmallestTolerance = 1e-7;
 struct RenderSettings {
   int width = 512;  ///< pixels, in [1, kLargestResolution]
   int height = 512;
-  Source source = Source::kWalk;
+  std::optional<Source> source;  ///< empty: the one for the data
   Integrator integrator = Integrator::kAntiderivative;
-  double tolerance = 5e-5;                ///< error in colour that one segment may add (antiderivative)
+  double tolerance = 2e-3;                ///< error in colour that a picture may have: half an 8-bit step
   int samples = 8;                        ///< samples a segment (post), in [1, 4096]
+  Filter filter;                          ///< how a grid's field is reconstructed
+  double samples_per_voxel = 0.0;         ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
   bool use_early_ray_termination = true;  ///< stop a ray when no 8-bit pixel over any background can change
   int threads = 0;                        ///< 0: all cores
   std::string instruction_set;            ///< "": the best there is; otherwise one of `instruction_sets()`
@@ -45,8 +53,8 @@ struct RenderSettings {
 
 struct RenderStatistics {
   double seconds = 0.0;
-  std::uint64_t segments = 0;      ///< ray-cell segments, as walked
-  std::uint64_t rays = 0;          ///< rays that met the mesh
+  std::uint64_t segments = 0;      ///< ray-cell segments, as walked or marched
+  std::uint64_t rays = 0;          ///< rays that met the data
   std::uint64_t stopped_rays = 0;  ///< rays stopped by the bound on steps (damaged meshes only)
   int threads = 0;
   std::string instruction_set;
@@ -66,11 +74,12 @@ std::vector<std::pair<std::string, std::string>> integrator_names();
 /// The instruction sets compiled in and supported by this machine, best first.
 std::vector<std::string> instruction_sets();
 
-/// Draws one mesh many times. Views the mesh, which must outlive it. Not safe for concurrent calls; use one for each
-/// thread.
+/// Draws one mesh or grid many times. Views it: it must outlive the renderer. Not safe for concurrent calls; use one
+/// for each thread.
 class Renderer {
  public:
   explicit Renderer(const PreparedMesh& mesh);
+  explicit Renderer(const PreparedGrid& grid);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
@@ -96,9 +105,13 @@ class Renderer {
 /// One call for one picture; see `Renderer`.
 Image render(const PreparedMesh& mesh, const OpticalFunction& function, const Camera& camera,
              const RenderSettings& settings = {});
+Image render(const PreparedGrid& grid, const OpticalFunction& function, const Camera& camera,
+             const RenderSettings& settings = {});
 
 /// Bytes that rendering needs beside the prepared mesh: the camera's vertices, tables, picture. Upper estimate.
 std::uint64_t estimate_render_memory(std::uint64_t vertices, std::uint64_t boundary_faces,
                                      const RenderSettings& settings);
+/// The same for a grid: copies that the filter asks for, tables, picture.
+std::uint64_t estimate_render_memory(const GridData& grid, const RenderSettings& settings);
 
 }  // namespace tetravox

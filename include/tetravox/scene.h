@@ -4,6 +4,7 @@
 
 #include "tetravox/camera.h"
 #include "tetravox/dataset.h"
+#include "tetravox/grid.h"
 #include "tetravox/render.h"
 #include "tetravox/transfer_function.h"
 
@@ -19,11 +20,23 @@ struct TimeRequest {
   std::optional<double> value;
 };
 
+/// How the bytes of a RAW file are to be understood. What is left empty is taken from the file's name
+/// (name_256x256x256_uint8.raw).
+struct RawLayout {
+  std::optional<std::array<std::uint32_t, 3>> dimensions;
+  std::optional<ScalarType> type;
+  std::optional<int> components;  ///< interleaved, in [1, 4]
+  std::optional<std::array<double, 3>> spacing;
+  std::optional<bool> is_big_endian;
+  std::uint64_t header_bytes = 0;  ///< to leave out at the beginning
+};
+
 struct SceneData {
   std::string file;           ///< a path, relative to the scene file or absolute, or "builtin:NAME"
   std::string solution_file;  ///< PLOT3D: the solution (Q) that goes with the grid `file`; otherwise empty
   ArrayRequest array;
   TimeRequest time;
+  RawLayout raw;
 };
 
 struct Scene {
@@ -50,6 +63,7 @@ struct CompletedScene {
   Camera camera;
 };
 CompletedScene complete_scene(const Scene& scene, const PreparedMesh& mesh);
+CompletedScene complete_scene(const Scene& scene, const PreparedGrid& grid);
 
 /// Histogram of the field over the prepared mesh, in values, weighted by volume; `bins` in [1, 2^20]. Values count as
 /// linear in a cell (point data) or constant (cell data). Meshes above 100,000 cells are sampled evenly. A few outliers
@@ -57,5 +71,7 @@ CompletedScene complete_scene(const Scene& scene, const PreparedMesh& mesh);
 /// of the mesh, so that thin bodies are drawn denser. The same on every run, for any number of threads.
 /// @throws Error (kInvalidArgument) for a number of bins out of range.
 Histogram make_histogram(const PreparedMesh& mesh, int bins = 256);
+/// The same for a grid, of its values (weighted by the volume of their cells where axes are uneven).
+Histogram make_histogram(const PreparedGrid& grid, int bins = 256);
 
 }  // namespace tetravox

@@ -34,6 +34,9 @@ struct Renderer::State {
 
 namespace {
 
+/// A ray of a mesh may err by the picture's tolerance where this many of its segments err all they may.
+constexpr float kSegmentsOfTolerance = 40.0f;
+
 /// 32-bit gathers reach this many 20-byte cells.
 constexpr std::size_t kMostCells = 0x7FFFFFFFu / 5;
 
@@ -190,7 +193,7 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
     const cpu::IntegratorTables tables{
         &state_->antiderivative, &state_->control_points,
         settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,
-        static_cast<float>(settings.tolerance), settings.samples};
+        static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, settings.samples};
     const auto walk = choose_walk(kernels, mesh.association, settings.integrator, state_->antiderivative.is_gentle);
     tbb::enumerable_thread_specific<cpu::TileScratch> scratches;
     TileProgress tile_progress(progress, frame.bins.tile_count());

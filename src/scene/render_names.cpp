@@ -16,16 +16,18 @@ struct Name {
   std::string_view description;
 };
 
-constexpr std::array<Name<Source>, 1> kSources{
-    {{Source::kWalk, "walk", "ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)"}}};
+constexpr std::array<Name<Source>, 2> kSources{
+    {{Source::kWalk, "walk", "meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)"},
+     {Source::kMarch, "march", "grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)"}}};
 
-constexpr std::array<Name<Integrator>, 3> kIntegrators{
+constexpr std::array<Name<Integrator>, 4> kIntegrators{
     {{Integrator::kAntiderivative, "antiderivative",
       "tables of antiderivatives, split where the error estimate asks (Max, Hanrahan, Crawfis 1990; Lum, Wilson, Ma "
       "2004)"},
      {Integrator::kPartial, "partial",
       "exact for piecewise linear functions (Moreland and Angel 2004; Espinha and Celes 2005)"},
-     {Integrator::kPost, "post", "point samples along each segment, for comparison"}}};
+     {Integrator::kPost, "post", "post-classification: point samples along each segment, for comparison"},
+     {Integrator::kPre, "pre", "pre-classification: colours and extinctions at the values, interpolated; for comparison"}}};
 
 template <class Names>
 auto enumerator_from_name(const Names& names, std::string_view name, std::string_view what) {

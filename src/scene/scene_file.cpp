@@ -166,7 +166,7 @@ Json write_camera(const Camera& camera) {
 
 Json write_render(const RenderSettings& settings) {
   Json json;
-  json["source"] = name_of(settings.source);
+  if (settings.source) json["source"] = name_of(*settings.source);
   json["integrator"] = name_of(settings.integrator);
   json["tolerance"] = settings.tolerance;
   json["samples"] = settings.samples;
