@@ -21,23 +21,28 @@ Vector3 normalized(const Vector3& a) {
 
 }  // namespace
 
-CameraFrame make_camera_frame(const PreparedMesh& mesh, const Camera& camera, int width, int height) {
+CameraFrame make_camera_frame(const Vector3& origin, double world_per_local, const Camera& camera, int width,
+                              int height) {
   CameraFrame frame;
   Vector3 view{}, eye{};
   for (int i = 0; i < 3; ++i) {
     view[i] = camera.focal_point[i] - camera.position[i];
-    eye[i] = (camera.position[i] - mesh.origin[i]) / mesh.world_per_local;
+    eye[i] = (camera.position[i] - origin[i]) / world_per_local;
   }
   const Vector3 forward = normalized(view);
   const Vector3 right = normalized(cross(forward, camera.view_up));
   frame.axes = {right, cross(right, forward), forward};
   for (int i = 0; i < 3; ++i) frame.eye[i] = dot(frame.axes[i], eye);
   frame.is_orthographic = camera.parallel_scale.has_value();
-  frame.pixel_step = frame.is_orthographic ? 2.0 * *camera.parallel_scale / mesh.world_per_local / height
+  frame.pixel_step = frame.is_orthographic ? 2.0 * *camera.parallel_scale / world_per_local / height
                                            : 2.0 * std::tan(camera.view_angle * std::numbers::pi / 360.0) / height;
   frame.width = width;
   frame.height = height;
   return frame;
+}
+
+CameraFrame make_camera_frame(const PreparedMesh& mesh, const Camera& camera, int width, int height) {
+  return make_camera_frame(mesh.origin, mesh.world_per_local, camera, width, height);
 }
 
 Rays make_rays(const CameraFrame& frame, double world_per_local) {

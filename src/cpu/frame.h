@@ -16,7 +16,7 @@
 
 namespace tetravox::cpu {
 
-/// The camera in a mesh's local units.
+/// The camera in local units.
 struct CameraFrame {
   std::array<Vector3, 3> axes{};  ///< right, up, forward: unit vectors, world directions
   Vector3 eye{};                  ///< in the camera frame
@@ -25,6 +25,9 @@ struct CameraFrame {
   int width = 0, height = 0;
 };
 
+/// `origin`: world position of the local origin.
+CameraFrame make_camera_frame(const Vector3& origin, double world_per_local, const Camera& camera, int width,
+                              int height);
 CameraFrame make_camera_frame(const PreparedMesh& mesh, const Camera& camera, int width, int height);
 
 /// The arrays that a RayGrid views.

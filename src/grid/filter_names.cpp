@@ -42,9 +42,11 @@ int parse_radius(std::string_view text, const std::string& name) {
 
 std::string name_of(const Filter& filter) {
   for (const FilterEntry& entry : kFilters)
-    if (entry.kind == filter.kind)
-      return std::string(entry.name) +
-             (filter.kind == FilterKind::kLanczos ? "=" + std::to_string(filter.radius) : std::string());
+    if (entry.kind == filter.kind) {
+      std::string name(entry.name);
+      if (filter.kind == FilterKind::kLanczos) name.append("=").append(std::to_string(filter.radius));
+      return name;
+    }
   throw Error(ErrorCode::kInvalidArgument, "a filter without a name");
 }
 
@@ -58,7 +60,7 @@ Filter filter_from_name(const std::string& name) {
       if (has_radius && stem != whole) filter.radius = parse_radius(whole.substr(stem.size() + 1), name);
       return filter;
     }
-    known += (known.empty() ? "" : ", ") + std::string(entry.name) + (has_radius ? "=N" : "");
+    known.append(known.empty() ? "" : ", ").append(entry.name).append(has_radius ? "=N" : "");
   }
   throw Error(ErrorCode::kInvalidArgument, "there is no filter '" + name + "'; there is: " + known);
 }

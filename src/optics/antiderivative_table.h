@@ -10,6 +10,7 @@
 #include "tetravox/transfer_function.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -57,6 +58,11 @@ struct AntiderivativeTable {
   float largest_color_slope = 0.0f;  ///< bound on the change of colour between neighbouring nodes
   std::array<float, 4> density_below{};  ///< rho, rho * colour before node 0 ...
   std::array<float, 4> density_above{};  ///< ... and after the last node
+
+  std::size_t bytes() const {
+    return entries.size() * sizeof(Node) + color_variation.size() * sizeof(float) +
+           (is_coarse.size() + coarse_before.size()) * sizeof(std::int32_t);
+  }
 };
 
 /// Makes `table` that of `function` over the part of `range` (values) where it varies: one pass, well under a
@@ -76,6 +82,10 @@ struct ControlPointTable {
   std::vector<std::int32_t> first_interval;           ///< [buckets]: interval of the lower end of each bucket
   float first = 0.0f;
   float buckets_per_scalar = 1.0f;
+
+  std::size_t bytes() const {
+    return starts.size() * 11 * sizeof(float) + first_interval.size() * sizeof(std::int32_t);
+  }
 };
 
 ControlPointTable build_control_point_table(const OpticalFunction& function, const ScalarMap& map);

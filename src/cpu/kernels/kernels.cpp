@@ -17,6 +17,7 @@
 
 #include "src/cpu/kernels/antiderivative-inl.h"
 #include "src/cpu/kernels/integrators-inl.h"
+#include "src/cpu/kernels/march-inl.h"
 #include "src/cpu/kernels/rasterize-inl.h"
 #include "src/cpu/kernels/walk-inl.h"
 
@@ -29,6 +30,11 @@ WalkStatistics walk(const WalkJob& job) {
   return Walker<Integrator, kCellData>(job).run();
 }
 
+template <class Integrator>
+std::uint64_t march(const MarchJob& job, int count) {
+  return Marcher<Integrator>(job).run(count);
+}
+
 Kernels make_kernels() {
   Kernels kernels;
   kernels.rasterize_face = &rasterize_face;
@@ -37,6 +43,13 @@ Kernels make_kernels() {
   kernels.walk_partial = &walk<PartialIntegrator, false>;
   kernels.walk_post = &walk<PostIntegrator, false>;
   kernels.walk_cells = &walk<CellIntegrator, true>;
+  kernels.start_march = &start_march;
+  kernels.clip_brick = &clip_brick;
+  kernels.march_antiderivative = &march<AntiderivativeIntegrator>;
+  kernels.march_gentle_antiderivative = &march<GentleAntiderivativeIntegrator>;
+  kernels.march_partial = &march<PartialIntegrator>;
+  kernels.march_post = &march<PostIntegrator>;
+  kernels.march_cells = &march_cells;
   return kernels;
 }
 

@@ -6,6 +6,7 @@
 /// same operations in the same order, without fused multiply-add, so that every instruction set gives the same bits.
 
 #include "src/optics/antiderivative_table.h"
+#include "src/optics/steepness_table.h"
 #include "src/optics/transparency_table.h"
 #include "tetravox/mesh.h"
 
@@ -96,6 +97,56 @@ struct WalkJob {
   const std::atomic<bool>* cancelled = nullptr;  ///< once true, the tile is given up
 };
 
+/// The rays of a tile on their way through a grid, [kTileSize][kTileSize] each. Grid coordinates.
+struct MarchRays {
+  static constexpr int kCount = kTileSize * kTileSize;
+  static constexpr int kPadding = 16;  ///< kernels load whole vectors
+
+  alignas(64) float origin[3][kCount];     ///< at depth 0 of the camera frame
+  alignas(64) float direction[3][kCount];  ///< for one unit of depth
+  alignas(64) float world_per_z[kCount];
+  alignas(64) float z_far[kCount];  ///< where the ray ends: infinite, or below everything once it is settled
+  alignas(64) float red[kCount], green[kCount], blue[kCount], transmittance[kCount];
+  /// Those that meet the brick at hand, by the number of cells that they cross.
+  alignas(64) std::int32_t ray[kCount + kPadding];
+  alignas(64) float z_enter[kCount + kPadding], z_leave[kCount + kPadding];
+  // Scratch: the same, in order of pixels.
+  alignas(64) std::int32_t unsorted_ray[kCount + kPadding], cells[kCount + kPadding];
+  alignas(64) float unsorted_enter[kCount + kPadding], unsorted_leave[kCount + kPadding];
+};
+
+/// A brick as a lattice of cells between whose corners the scalar is trilinear (or in which it is constant).
+struct MarchBrick {
+  float lower[3] = {}, upper[3] = {};  ///< grid coordinates
+  bool is_last[3] = {};                ///< whether the brick ends the grid along the axis
+  std::int32_t cells[3] = {1, 1, 1};
+  TileBounds bounds;  ///< the pixels of the tile that may see it, counted from the tile's corner
+  const float* records =
+      nullptr;  ///< [z nodes][y cells][x cells][4]: the corners (x, y), (x+1, y), (x, y+1), (x+1, y+1)
+  const float* constants = nullptr;  ///< [z cells][y cells][x cells] instead, where the scalar is constant in each cell
+  bool has_missing = false;          ///< whether a corner is not a number
+  float steepness = 0.0f;            ///< largest change of density with the scalar in the brick
+};
+
+struct MarchJob {
+  MarchRays* rays = nullptr;
+  const MarchBrick* brick = nullptr;
+  const IntegratorTables* tables = nullptr;
+  const optics::SteepnessTable* steepness = nullptr;
+  float allowed_rate = 0.0f;  ///< error in colour for one unit of world length that a segment may have
+  float z_near = 0.0f;
+  bool is_constant = false;  ///< whether the scalar is constant in each cell
+  bool use_early_ray_termination = true;
+};
+
+/// Where the rays of a tile lie in a grid.
+struct MarchStart {
+  const RayGrid* rays = nullptr;
+  int column = 0, row = 0;          ///< of the tile's corner
+  float grid_from_camera[12] = {};  ///< rows of a 3 x 4 matrix
+  MarchRays* tile = nullptr;
+};
+
 /// The kernels of one instruction set. All are safe to call from many threads.
 struct Kernels {
   /// Appends to `hits` the pixels of `bounds` whose ray meets `face` from its outer side.
@@ -105,6 +156,16 @@ struct Kernels {
   WalkStatistics (*walk_gentle_antiderivative)(const WalkJob& job) = nullptr;  ///< for `AntiderivativeTable::is_gentle`
   WalkStatistics (*walk_partial)(const WalkJob& job) = nullptr;
   WalkStatistics (*walk_post)(const WalkJob& job) = nullptr;
+  void (*start_march)(const MarchStart& start) = nullptr;
+  /// Finds the rays that meet the brick; returns how many.
+  int (*clip_brick)(const MarchJob& job) = nullptr;
+  /// Marches those rays through the brick; returns how many segments they had.
+  std::uint64_t (*march_antiderivative)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*march_gentle_antiderivative)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*march_partial)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*march_post)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*march_cells)(const MarchJob& job,
+                               int count) = nullptr;           ///< constant cells, exact with every integrator
   WalkStatistics (*walk_cells)(const WalkJob& job) = nullptr;  ///< cell data, exact with every integrator
 };
 

@@ -33,6 +33,25 @@ HWY_INLINE void composite_piece(Float depth, const Float emission[3], Float rati
   sum.transmittance = hn::Sub(sum.transmittance, hn::Mul(visible, depth));
 }
 
+/// Below this transmittance a ray is looked at for early termination.
+constexpr float kDim = 1e-4f;
+
+/// Rays of which no 8-bit pixel can change any more: whatever follows adds between nothing and the transmittance to
+/// each channel, over any background, with or without alpha.
+HWY_INLINE Mask is_settled(const Accumulated& sum) {
+  const Mask dim = hn::Lt(sum.transmittance, constant(kDim));
+  if (HWY_LIKELY(hn::AllFalse(kFloat, dim))) return dim;
+  // Three transmittances bound the channel divided by alpha, too, and rounding.
+  const Float reach = hn::Mul(constant(3.0f), sum.transmittance);
+  const auto settled = [&](Float channel) {
+    const Float low = hn::Floor(multiply_add(hn::Sub(channel, constant(1e-6f)), constant(255.0f), constant(0.5f)));
+    const Float high =
+        hn::Floor(multiply_add(hn::Add(hn::Add(channel, reach), constant(1e-6f)), constant(255.0f), constant(0.5f)));
+    return hn::Eq(low, high);
+  };
+  return hn::And(dim, hn::And(hn::And(settled(sum.red), settled(sum.green)), settled(sum.blue)));
+}
+
 /// Exact evaluation of the control points.
 class ControlPoints {
  public:

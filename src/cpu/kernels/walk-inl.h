@@ -20,9 +20,6 @@ HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
 
-/// Below this transmittance a ray is looked at for early termination.
-constexpr float kDim = 1e-4f;
-
 template <class Integrator, bool kCellData>
 class Walker {
  public:
@@ -312,24 +309,12 @@ class Walker {
     Integrator::replace_front(before, clipped, s.front);
   }
 
-  /// Stops rays of which no 8-bit pixel can change any more: whatever follows adds between nothing and the
-  /// transmittance to each channel, over any background, with or without alpha.
+  /// Stops rays of which no 8-bit pixel can change any more.
   HWY_INLINE void terminate_early(RayState& s) const {
-    const Mask dim = hn::And(s.alive, hn::Lt(s.sum.transmittance, constant(kDim)));
-    if (HWY_LIKELY(hn::AllFalse(kFloat, dim))) return;
-    // Three transmittances bound the channel divided by alpha, too, and rounding.
-    const Float reach = hn::Mul(constant(3.0f), s.sum.transmittance);
-    const auto settled = [&](Float channel) {
-      const Float low = hn::Floor(multiply_add(hn::Sub(channel, constant(1e-6f)), constant(255.0f), constant(0.5f)));
-      const Float high =
-          hn::Floor(multiply_add(hn::Add(hn::Add(channel, reach), constant(1e-6f)), constant(255.0f), constant(0.5f)));
-      return hn::Eq(low, high);
-    };
-    const Mask done = hn::And(hn::And(settled(s.sum.red), settled(s.sum.green)), settled(s.sum.blue));
-    s.alive = hn::AndNot(hn::And(dim, done), s.alive);
-    // A ray that is done has no further entry.
-    const Mask ended = hn::And(dim, done);
-    if (!hn::AllFalse(kFloat, ended)) forget_entries(ended);
+    const Mask ended = hn::And(s.alive, is_settled(s.sum));
+    if (HWY_LIKELY(hn::AllFalse(kFloat, ended))) return;
+    s.alive = hn::AndNot(ended, s.alive);
+    forget_entries(ended);  // A ray that is done has no further entry.
   }
 
   void forget_entries(Mask ended) const {

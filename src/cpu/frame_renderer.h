@@ -1,0 +1,59 @@
+#pragma once
+
+/// What draws one kind of data: behind `Renderer`, which validates for it.
+
+#include "src/cpu/kernels/kernels.h"
+#include "tetravox/render.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace tetravox::cpu {
+
+/// Draws frames of one dataset. Not safe for concurrent calls.
+class FrameRenderer {
+ public:
+  virtual ~FrameRenderer() = default;
+
+  /// The function is valid, and its extinctions are within what float can work with.
+  virtual void set_transfer_function(const OpticalFunction& function) = 0;
+  /// Draws into `image`, whose pixels are zero. Settings and camera are valid.
+  virtual void render(const Camera& camera, const RenderSettings& settings, const Kernels& kernels,
+                      const Progress& progress, Image& image, RenderStatistics& statistics) = 0;
+  /// Bytes that the next frame needs beside what is held.
+  virtual std::uint64_t missing_bytes(const RenderSettings& settings) const = 0;
+  /// Bytes held for frames and tables.
+  virtual std::uint64_t bytes() const = 0;
+  virtual Source source() const = 0;
+  /// World length of the longest ray.
+  virtual double diagonal() const = 0;
+};
+
+std::unique_ptr<FrameRenderer> make_mesh_renderer(const PreparedMesh& mesh);
+std::unique_ptr<FrameRenderer> make_grid_renderer(const PreparedGrid& grid);
+
+/// Length of the diagonal of bounds.
+double diagonal_of(const std::array<ValueRange, 3>& bounds);
+
+/// Calls `report` with the part done, from one thread at a time.
+class TileProgress {
+ public:
+  TileProgress(const Progress& progress, std::size_t count) : progress_(progress), count_(count) {}
+
+  void tile_done() {
+    const std::size_t done = ++done_;
+    if (!progress_.report || (done % 16 != 0 && done != count_) || busy_.test_and_set()) return;
+    progress_.report("draw", static_cast<double>(done) / static_cast<double>(count_));
+    busy_.clear();
+  }
+
+ private:
+  const Progress& progress_;
+  std::size_t count_;
+  std::atomic<std::size_t> done_{0};
+  std::atomic_flag busy_;
+};
+
+}  // namespace tetravox::cpu

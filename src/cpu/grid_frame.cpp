@@ -1,0 +1,168 @@
+#include "src/cpu/grid_frame.h"
+
+#include "src/grid/summaries.h"
+#include "src/support/threads.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetravox::cpu {
+namespace {
+
+/// a * b for 3 x 4 matrices of affine maps.
+std::array<double, 12> chain(const std::array<double, 12>& a, const std::array<double, 12>& b) {
+  std::array<double, 12> c{};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) {
+      double sum = column == 3 ? a[4 * row + 3] : 0.0;
+      for (int i = 0; i < 3; ++i) sum += a[4 * row + i] * b[4 * i + column];
+      c[4 * row + column] = sum;
+    }
+  return c;
+}
+
+grid::Point transform_point(const std::array<double, 12>& m, const grid::Point& p) {
+  grid::Point q{};
+  for (int row = 0; row < 3; ++row)
+    q[row] = m[4 * row] * p[0] + m[4 * row + 1] * p[1] + m[4 * row + 2] * p[2] + m[4 * row + 3];
+  return q;
+}
+
+struct PixelBounds {
+  int column_begin = 0, column_end = 0, row_begin = 0, row_end = 0;
+};
+
+/// Pixels whose rays may meet the box: all of them where it reaches behind the eye.
+PixelBounds project_box(const grid::BrickBox& box, const GridView& view) {
+  const CameraFrame& camera = view.camera;
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (int corner = 0; corner < 8; ++corner) {
+    grid::Point at{};
+    for (int axis = 0; axis < 3; ++axis)
+      at[axis] = static_cast<double>(box.first[axis] + (corner >> axis & 1 ? box.count[axis] : 0));
+    const grid::Point seen = transform_point(view.camera_from_grid, at);
+    double scale = 1.0 / camera.pixel_step;
+    if (!camera.is_orthographic) {
+      const double depth = seen[2] - camera.eye[2];
+      if (!(depth > 1e-6)) return {0, camera.width, 0, camera.height};
+      scale /= depth;
+    }
+    for (int i = 0; i < 2; ++i) {
+      const double offset = (seen[i] - camera.eye[i]) * scale;
+      low[i] = std::min(low[i], offset);
+      high[i] = std::max(high[i], offset);
+    }
+  }
+  const auto pixel = [](double at, int size) {
+    return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(size)));
+  };
+  // A pixel more on either side stands for rounding.
+  return {pixel(std::floor(low[0] + 0.5 * camera.width - 1.5), camera.width),
+          pixel(std::ceil(high[0] + 0.5 * camera.width + 1.5), camera.width),
+          pixel(std::floor(0.5 * camera.height - high[1] - 1.5), camera.height),
+          pixel(std::ceil(0.5 * camera.height - low[1] + 1.5), camera.height)};
+}
+
+std::array<std::uint32_t, 3> position_of(const PreparedGrid& grid, std::uint32_t brick) {
+  const auto& counts = grid.bricks.counts;
+  return {brick % counts[0], brick / counts[0] % counts[1], brick / counts[0] / counts[1]};
+}
+
+/// The bricks front to back: a counting sort by their distance from the eye's, in bricks along the axes.
+std::vector<std::uint32_t> order_bricks(const PreparedGrid& grid, const std::vector<std::uint32_t>& bricks,
+                                        const GridView& view) {
+  const auto& counts = grid.bricks.counts;
+  std::array<std::int64_t, 3> nearest{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t last = counts[axis] - 1;
+    if (view.camera.is_orthographic)
+      nearest[axis] = view.eye[axis] > 0.0 ? 0 : last;
+    else
+      nearest[axis] = static_cast<std::int64_t>(
+          std::clamp(std::floor(view.eye[axis] / kBrickCells), 0.0, static_cast<double>(last)));
+  }
+  const auto distance = [&](std::uint32_t brick) {
+    const auto at = position_of(grid, brick);
+    std::size_t sum = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      sum += static_cast<std::size_t>(std::abs(static_cast<std::int64_t>(at[axis]) - nearest[axis]));
+    return sum;
+  };
+  std::vector<std::uint32_t> starts(static_cast<std::size_t>(counts[0]) + counts[1] + counts[2] + 1);
+  for (const std::uint32_t brick : bricks) ++starts[distance(brick) + 1];
+  for (std::size_t i = 1; i < starts.size(); ++i) starts[i] += starts[i - 1];
+  std::vector<std::uint32_t> ordered(bricks.size());
+  for (const std::uint32_t brick : bricks) ordered[starts[distance(brick)]++] = brick;
+  return ordered;
+}
+
+/// Calls `visit(tile, bounds in the tile)` for the tiles that a box of pixels touches.
+template <class Visit>
+void for_each_tile(const PixelBounds& pixels, int tile_columns, const Visit& visit) {
+  if (pixels.column_begin >= pixels.column_end || pixels.row_begin >= pixels.row_end) return;
+  for (int row = pixels.row_begin / kTileSize; row <= (pixels.row_end - 1) / kTileSize; ++row)
+    for (int column = pixels.column_begin / kTileSize; column <= (pixels.column_end - 1) / kTileSize; ++column) {
+      const auto inside = [](int at, int tile) { return std::clamp(at - tile * kTileSize, 0, kTileSize); };
+      visit(static_cast<std::size_t>(row) * tile_columns + column,
+            TileBounds{inside(pixels.column_begin, column), inside(pixels.column_end, column),
+                       inside(pixels.row_begin, row), inside(pixels.row_end, row)});
+    }
+}
+
+}  // namespace
+
+GridView make_grid_view(const PreparedGrid& grid, const Camera& camera, int width, int height) {
+  GridView view;
+  Vector3 center{};
+  double half_extent = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    center[axis] = 0.5 * grid.bounds[axis].min + 0.5 * grid.bounds[axis].max;
+    half_extent = std::max(half_extent, 0.5 * grid.bounds[axis].max - 0.5 * grid.bounds[axis].min);
+  }
+  view.world_per_local = half_extent > 0.0 ? half_extent : 1.0;
+  view.camera = make_camera_frame(center, view.world_per_local, camera, width, height);
+  const grid::GridFrame frame = grid::make_grid_frame(grid.data.shape);
+  // Offsets are taken from the centre, so that a grid far from the origin loses nothing.
+  std::array<double, 12> grid_from_offset{}, offset_from_camera{}, offset_from_grid{}, camera_from_offset{};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) {
+      grid_from_offset[4 * row + column] = frame.grid_from_world[3 * row + column];
+      grid_from_offset[4 * row + 3] +=
+          frame.grid_from_world[3 * row + column] * (center[column] - frame.origin[column]);
+      offset_from_camera[4 * row + column] = view.camera.axes[column][row] * view.world_per_local;
+      offset_from_grid[4 * row + column] = frame.world_from_grid[3 * row + column];
+      camera_from_offset[4 * row + column] = view.camera.axes[row][column] / view.world_per_local;
+    }
+  for (int row = 0; row < 3; ++row) offset_from_grid[4 * row + 3] = frame.origin[row] - center[row];
+  view.grid_from_camera = chain(grid_from_offset, offset_from_camera);
+  view.camera_from_grid = chain(camera_from_offset, offset_from_grid);
+  view.eye = transform_point(view.grid_from_camera, view.camera.eye);
+  if (view.camera.is_orthographic)
+    for (int row = 0; row < 3; ++row) view.eye[row] = view.grid_from_camera[4 * row + 2];
+  return view;
+}
+
+BrickBins bin_bricks(const PreparedGrid& grid, const std::vector<std::uint32_t>& bricks, const GridView& view) {
+  BrickBins bins;
+  bins.columns = (view.camera.width + kTileSize - 1) / kTileSize;
+  bins.rows = (view.camera.height + kTileSize - 1) / kTileSize;
+  bins.starts.assign(bins.tile_count() + 1, 0);
+  const std::vector<std::uint32_t> ordered = order_bricks(grid, bricks, view);
+  std::vector<PixelBounds> pixels(ordered.size());
+  support::parallel_chunks(ordered.size(), 1 << 10, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      pixels[i] = project_box(grid::box_of_brick(grid.data.shape, position_of(grid, ordered[i])), view);
+  });
+  for (const PixelBounds& seen : pixels)
+    for_each_tile(seen, bins.columns, [&](std::size_t tile, const TileBounds&) { ++bins.starts[tile + 1]; });
+  for (std::size_t i = 1; i < bins.starts.size(); ++i) bins.starts[i] += bins.starts[i - 1];
+  bins.bricks.resize(bins.starts.back());
+  std::vector<std::uint32_t> next(bins.starts.begin(), bins.starts.end() - 1);
+  for (std::size_t i = 0; i < ordered.size(); ++i)
+    for_each_tile(pixels[i], bins.columns, [&](std::size_t tile, const TileBounds& bounds) {
+      bins.bricks[next[tile]++] = {ordered[i], bounds};
+    });
+  return bins;
+}
+
+}  // namespace tetravox::cpu

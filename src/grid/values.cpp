@@ -1,0 +1,185 @@
+#include "src/grid/values.h"
+
+#include "src/support/threads.h"
+
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace tetravox::grid {
+namespace {
+
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The type in which a value is moved and scaled: float where that loses nothing.
+template <class T>
+using Working = std::conditional_t<(sizeof(T) <= 2 || std::is_same_v<T, float>), float, double>;
+
+template <class T>
+void read_scalars(const std::byte* row, int components, int component, std::int64_t count, double offset,
+                  double inverse_scale, float* out) {
+  const T* values = reinterpret_cast<const T*>(row) + component;
+  const auto moved = static_cast<Working<T>>(offset), scale = static_cast<Working<T>>(inverse_scale);
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto value = static_cast<Working<T>>(values[i * components]);
+    const auto stored = static_cast<float>((value - moved) * scale);
+    if constexpr (std::is_floating_point_v<T>)
+      out[i] = stored - stored == 0.0f ? stored : kMissing;
+    else
+      out[i] = stored;
+  }
+}
+
+template <class T>
+void read_magnitudes(const std::byte* row, int components, int, std::int64_t count, double offset, double inverse_scale,
+                     float* out) {
+  const T* values = reinterpret_cast<const T*>(row);
+  for (std::int64_t i = 0; i < count; ++i) {
+    double sum = 0.0;
+    for (int c = 0; c < components; ++c) {
+      const auto value = static_cast<double>(values[i * components + c]);
+      sum += value * value;
+    }
+    const auto stored = static_cast<float>((std::sqrt(sum) - offset) * inverse_scale);
+    out[i] = stored - stored == 0.0f ? stored : kMissing;
+  }
+}
+
+/// Calls `visit` with a value of the C++ type that `type` stands for.
+template <class Visit>
+auto visit_type(ScalarType type, const Visit& visit) {
+  switch (type) {
+    case ScalarType::kInt8:
+      return visit(std::int8_t{});
+    case ScalarType::kUint8:
+      return visit(std::uint8_t{});
+    case ScalarType::kInt16:
+      return visit(std::int16_t{});
+    case ScalarType::kUint16:
+      return visit(std::uint16_t{});
+    case ScalarType::kInt32:
+      return visit(std::int32_t{});
+    case ScalarType::kUint32:
+      return visit(std::uint32_t{});
+    case ScalarType::kInt64:
+      return visit(std::int64_t{});
+    case ScalarType::kUint64:
+      return visit(std::uint64_t{});
+    case ScalarType::kFloat32:
+      return visit(float{});
+    case ScalarType::kFloat64:
+      break;
+  }
+  return visit(double{});
+}
+
+template <class T>
+ValueSurvey survey_part(const GridData& grid, std::size_t begin, std::size_t end, ValueSurvey survey) {
+  const T* values = reinterpret_cast<const T*>(grid.values.data());
+  const auto components = static_cast<std::size_t>(grid.components);
+  const auto include = [&survey](double value) {
+    if (!std::isfinite(value)) {
+      ++survey.missing;
+      return;
+    }
+    survey.range.min = std::min(survey.range.min, value);
+    survey.range.max = std::max(survey.range.max, value);
+  };
+  if (grid.component == kMagnitude) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double sum = 0.0;
+      for (std::size_t c = 0; c < components; ++c)
+        sum += static_cast<double>(values[i * components + c]) * static_cast<double>(values[i * components + c]);
+      include(std::sqrt(sum));
+    }
+  } else if constexpr (std::is_integral_v<T>) {
+    T low = std::numeric_limits<T>::max(), high = std::numeric_limits<T>::lowest();
+    const T* at = values + grid.component;
+    for (std::size_t i = begin; i < end; ++i) {
+      low = std::min(low, at[i * components]);
+      high = std::max(high, at[i * components]);
+    }
+    include(static_cast<double>(low));
+    include(static_cast<double>(high));
+  } else {
+    for (std::size_t i = begin; i < end; ++i)
+      include(static_cast<double>(values[i * components + static_cast<std::size_t>(grid.component)]));
+  }
+  return survey;
+}
+
+}  // namespace
+
+ScalarFrame choose_scalar_frame(const ValueRange& range) {
+  ScalarFrame frame;
+  const double largest_value = std::max(std::abs(range.min), std::abs(range.max));
+  if (range.max * 0.5 - range.min * 0.5 < 0.25 * largest_value)
+    frame.offset = static_cast<double>(static_cast<float>(range.min * 0.5 + range.max * 0.5));
+  if (!std::isfinite(frame.offset)) frame.offset = 0.0;
+  const double largest = std::max(std::abs(range.min - frame.offset), std::abs(range.max - frame.offset));
+  if (largest > 0.0) frame.scale = std::ldexp(1.0, std::max(std::ilogb(largest), -1000));
+  return frame;
+}
+
+BlockReader::BlockReader(const GridData& grid, const ScalarFrame& frame)
+    : values_(grid.values.data()),
+      value_bytes_(scalar_type_size(grid.type) * static_cast<std::size_t>(grid.components)),
+      components_(grid.components),
+      component_(grid.component),
+      offset_(frame.offset),
+      inverse_scale_(1.0 / frame.scale) {
+  const auto dimensions = grid.value_dimensions();
+  for (int axis = 0; axis < 3; ++axis) dimensions_[axis] = static_cast<std::int64_t>(dimensions[axis]);
+  // Float cannot hold the factor of tiny or huge values: then everything goes through double.
+  read_row_ = visit_type(grid.type, [&](auto value) -> ReadRow {
+    using T = decltype(value);
+    return grid.component == kMagnitude ? &read_magnitudes<T> : &read_scalars<T>;
+  });
+}
+
+void BlockReader::read_row(std::int64_t j, std::int64_t k, const Block& block, float* out) const {
+  const std::int64_t last = dimensions_[0] - 1;
+  const std::int64_t begin = std::clamp(block.first[0], std::int64_t{0}, last);
+  const std::int64_t end = std::clamp(block.first[0] + block.count[0] - 1, std::int64_t{0}, last) + 1;
+  const std::int64_t row = (std::clamp(k, std::int64_t{0}, dimensions_[2] - 1) * dimensions_[1] +
+                            std::clamp(j, std::int64_t{0}, dimensions_[1] - 1)) *
+                           dimensions_[0];
+  const std::int64_t before = std::clamp(begin - block.first[0], std::int64_t{0}, block.count[0] - 1);
+  const std::int64_t inside = std::min(end - begin, block.count[0] - before);
+  read_row_(values_ + static_cast<std::size_t>(row + begin) * value_bytes_, components_, component_, inside, offset_,
+            inverse_scale_, out + before);
+  std::fill_n(out, before, out[before]);
+  std::fill(out + before + inside, out + block.count[0], out[before + inside - 1]);
+}
+
+void BlockReader::read(const Block& block, float* out) const {
+  for (std::int64_t k = 0; k < block.count[2]; ++k)
+    for (std::int64_t j = 0; j < block.count[1]; ++j)
+      read_row(block.first[1] + j, block.first[2] + k, block, out + (k * block.count[1] + j) * block.count[0]);
+}
+
+ValueSurvey survey_values(const GridData& grid) {
+  const auto dimensions = grid.value_dimensions();
+  const std::size_t count = dimensions[0] * dimensions[1] * dimensions[2];
+  constexpr std::size_t kGrain = 1 << 18;
+  return visit_type(grid.type, [&](auto value) {
+    using T = decltype(value);
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, count, kGrain), ValueSurvey{{kInfinity, -kInfinity}, 0},
+        [&](const tbb::blocked_range<std::size_t>& part, const ValueSurvey& survey) {
+          return survey_part<T>(grid, part.begin(), part.end(), survey);
+        },
+        [](ValueSurvey a, const ValueSurvey& b) {
+          a.range.min = std::min(a.range.min, b.range.min);
+          a.range.max = std::max(a.range.max, b.range.max);
+          a.missing += b.missing;
+          return a;
+        });
+  });
+}
+
+}  // namespace tetravox::grid
