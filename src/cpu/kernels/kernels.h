@@ -134,6 +134,7 @@ struct MarchJob {
   const IntegratorTables* tables = nullptr;
   const optics::SteepnessTable* steepness = nullptr;
   float allowed_rate = 0.0f;  ///< error in colour for one unit of world length that a segment may have
+  float most_pieces = 12.0f;  ///< that a cell is cut into
   float z_near = 0.0f;
   bool is_constant = false;  ///< whether the scalar is constant in each cell
   bool use_early_ray_termination = true;

@@ -299,13 +299,12 @@ class Marcher {
   HWY_NOINLINE void integrate_pieces(const CellCorners& corners, const LatticeRays& rays, Float back, Float middle,
                                      Float bend, const Segments& segment, typename Integrator::Front& front,
                                      Accumulated& sum) const {
-    constexpr float kMostPieces = 16.0f;
     const Float low = hn::Min(hn::Min(segment.scalar_front, segment.scalar_back), middle);
     const Float high = hn::Max(hn::Max(segment.scalar_front, segment.scalar_back), middle);
     const Float rate = hn::Mul(bend, find_steepness(hn::Sub(low, bend), hn::Add(high, bend)));
     const Float pieces =
         hn::Min(hn::Max(hn::Ceil(hn::Sqrt(hn::Mul(rate, constant(1.0f / job_.allowed_rate)))), constant(1.0f)),
-                constant(kMostPieces));
+                constant(job_.most_pieces));
     const Float share = hn::Div(constant(1.0f), pieces);
     const Float depth = hn::Sub(back, rays.front);
     Segments piece{segment.scalar_front, segment.scalar_front, hn::Zero(kFloat)};
