@@ -1,5 +1,6 @@
 #include "src/grid/frame.h"
 #include "src/grid/summaries.h"
+#include "src/grid/survey.h"
 #include "src/grid/values.h"
 #include "src/support/memory.h"
 #include "tetravox/error.h"

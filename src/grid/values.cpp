@@ -1,8 +1,6 @@
 #include "src/grid/values.h"
 
-#include "src/support/threads.h"
-
-#include <tbb/parallel_reduce.h>
+#include "src/grid/visit_type.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +11,6 @@ namespace tetravox::grid {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The type in which a value is moved and scaled: float where that loses nothing.
 template <class T>
@@ -47,69 +44,6 @@ void read_magnitudes(const std::byte* row, int components, int, std::int64_t cou
     const auto stored = static_cast<float>((std::sqrt(sum) - offset) * inverse_scale);
     out[i] = stored - stored == 0.0f ? stored : kMissing;
   }
-}
-
-/// Calls `visit` with a value of the C++ type that `type` stands for.
-template <class Visit>
-auto visit_type(ScalarType type, const Visit& visit) {
-  switch (type) {
-    case ScalarType::kInt8:
-      return visit(std::int8_t{});
-    case ScalarType::kUint8:
-      return visit(std::uint8_t{});
-    case ScalarType::kInt16:
-      return visit(std::int16_t{});
-    case ScalarType::kUint16:
-      return visit(std::uint16_t{});
-    case ScalarType::kInt32:
-      return visit(std::int32_t{});
-    case ScalarType::kUint32:
-      return visit(std::uint32_t{});
-    case ScalarType::kInt64:
-      return visit(std::int64_t{});
-    case ScalarType::kUint64:
-      return visit(std::uint64_t{});
-    case ScalarType::kFloat32:
-      return visit(float{});
-    case ScalarType::kFloat64:
-      break;
-  }
-  return visit(double{});
-}
-
-template <class T>
-ValueSurvey survey_part(const GridData& grid, std::size_t begin, std::size_t end, ValueSurvey survey) {
-  const T* values = reinterpret_cast<const T*>(grid.values.data());
-  const auto components = static_cast<std::size_t>(grid.components);
-  const auto include = [&survey](double value) {
-    if (!std::isfinite(value)) {
-      ++survey.missing;
-      return;
-    }
-    survey.range.min = std::min(survey.range.min, value);
-    survey.range.max = std::max(survey.range.max, value);
-  };
-  if (grid.component == kMagnitude) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double sum = 0.0;
-      for (std::size_t c = 0; c < components; ++c)
-        sum += static_cast<double>(values[i * components + c]) * static_cast<double>(values[i * components + c]);
-      include(std::sqrt(sum));
-    }
-  } else if constexpr (std::is_integral_v<T>) {
-    T low = std::numeric_limits<T>::max(), high = std::numeric_limits<T>::lowest();
-    const T* at = values + grid.component;
-    for (std::size_t i = begin; i < end; ++i) {
-      low = std::min(low, at[i * components]);
-      high = std::max(high, at[i * components]);
-    }
-    include(static_cast<double>(low));
-    include(static_cast<double>(high));
-  } else {
-    for (std::size_t i = begin; i < end; ++i)
-      include(static_cast<double>(values[i * components + static_cast<std::size_t>(grid.component)]));
-  }
-  return survey;
 }
 
 }  // namespace
@@ -160,26 +94,6 @@ void BlockReader::read(const Block& block, float* out) const {
   for (std::int64_t k = 0; k < block.count[2]; ++k)
     for (std::int64_t j = 0; j < block.count[1]; ++j)
       read_row(block.first[1] + j, block.first[2] + k, block, out + (k * block.count[1] + j) * block.count[0]);
-}
-
-ValueSurvey survey_values(const GridData& grid) {
-  const auto dimensions = grid.value_dimensions();
-  const std::size_t count = dimensions[0] * dimensions[1] * dimensions[2];
-  constexpr std::size_t kGrain = 1 << 18;
-  return visit_type(grid.type, [&](auto value) {
-    using T = decltype(value);
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, count, kGrain), ValueSurvey{{kInfinity, -kInfinity}, 0},
-        [&](const tbb::blocked_range<std::size_t>& part, const ValueSurvey& survey) {
-          return survey_part<T>(grid, part.begin(), part.end(), survey);
-        },
-        [](ValueSurvey a, const ValueSurvey& b) {
-          a.range.min = std::min(a.range.min, b.range.min);
-          a.range.max = std::max(a.range.max, b.range.max);
-          a.missing += b.missing;
-          return a;
-        });
-  });
 }
 
 }  // namespace tetravox::grid

@@ -51,11 +51,4 @@ class BlockReader {
   ReadRow read_row_ = nullptr;
 };
 
-/// Range of the finite values of the component to draw, and how many values are not finite. One parallel pass.
-struct ValueSurvey {
-  ValueRange range;  ///< min > max where no value is finite
-  std::uint64_t missing = 0;
-};
-ValueSurvey survey_values(const GridData& grid);
-
 }  // namespace tetravox::grid
