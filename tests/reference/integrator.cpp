@@ -7,69 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace tetravox::reference {
 namespace {
 
-using Vec = std::array<double, 3>;
-
-Vec operator-(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec cross(const Vec& a, const Vec& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Vec unit(const Vec& a) {
-  const double length = std::sqrt(dot(a, a));
-  return {a[0] / length, a[1] / length, a[2] / length};
-}
-
-/// A ray in camera space (x right, y up, z away from the eye): origin + z * direction, with direction[2] = 1.
-struct Ray {
-  Vec origin{};
-  Vec direction{0, 0, 1};
-};
-
-/// The picture's plane: where pixel columns and rows lie in camera space at depth one (perspective) or anywhere.
-struct Screen {
-  bool is_perspective = true;
-  double half_width = 1.0, half_height = 1.0;
-  const View* view = nullptr;
-
-  /// Centre of column i (row j) of the drawn pixels, in camera space.
-  double x(int i) const {
-    const double centre = view->first_x + static_cast<double>(i) * view->stride + 0.5 + 1.3e-7;
-    return half_width * (2.0 * centre / view->width - 1.0);
-  }
-  double y(int j) const {
-    const double centre = view->first_y + static_cast<double>(j) * view->stride + 0.5 + 0.7e-7;
-    return half_height * (1.0 - 2.0 * centre / view->height);
-  }
-  Ray ray(int i, int j) const {
-    if (is_perspective) return {{0, 0, 0}, {x(i), y(j), 1.0}};
-    return {{x(i), y(j), 0}, {0, 0, 1}};
-  }
-};
-
-Screen make_screen(const View& view) {
-  Screen screen;
-  screen.view = &view;
-  screen.is_perspective = !view.camera.parallel_scale.has_value();
-  screen.half_height =
-      view.camera.parallel_scale.value_or(std::tan(0.5 * view.camera.view_angle * std::numbers::pi / 180.0));
-  screen.half_width = screen.half_height * view.width / view.height;
-  return screen;
-}
-
 std::vector<Vec> camera_points(const Tetrahedra& tetrahedra, const Camera& camera) {
-  const Vec forward = unit(camera.focal_point - camera.position);
-  const Vec right = unit(cross(forward, camera.view_up));
-  const Vec up = cross(right, forward);
+  const CameraAxes axes(camera);
   std::vector<Vec> points(tetrahedra.points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-    const Vec p = tetrahedra.points[i] - camera.position;
-    points[i] = {dot(p, right), dot(p, up), dot(p, forward)};
-  });
+  tbb::parallel_for(std::size_t{0}, points.size(),
+                    [&](std::size_t i) { points[i] = axes.camera_from_world(tetrahedra.points[i] - camera.position); });
   return points;
 }
 
@@ -81,7 +27,7 @@ struct Reach {
 
 /// Bounds of the vertices on the screen, widened by half a pixel; everything where a vertex is not in front of the eye.
 Reach find_reach(const std::array<Vec, 4>& corners, const Screen& screen) {
-  const View& view = *screen.view;
+  const View& view = screen.view;
   const int columns = view.drawn_width(), rows = view.drawn_height();
   double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300}, nearest = 1e300, farthest = -1e300;
   for (const Vec& p : corners) {
@@ -231,7 +177,7 @@ class RowDrawer {
 }  // namespace
 
 Image draw(const Tetrahedra& tetrahedra, const OpticalFunction& function, const View& view) {
-  const Screen screen = make_screen(view);
+  const Screen screen(view);
   const std::vector<Vec> points = camera_points(tetrahedra, view.camera);
   Image image{view.drawn_width(), view.drawn_height(), {}};
   image.pixels.assign(4 * static_cast<std::size_t>(image.width) * image.height, 0.0f);
@@ -245,15 +191,6 @@ Image draw(const Tetrahedra& tetrahedra, const OpticalFunction& function, const 
   const RowDrawer drawer(tetrahedra, points, function, screen);
   tbb::parallel_for(0, image.height, [&](int row) { drawer.draw_row(row, candidates[row], image); });
   return image;
-}
-
-Image pick_pixels(const Image& image, const View& view) {
-  Image picked{view.drawn_width(), view.drawn_height(), {}};
-  picked.pixels.resize(4 * static_cast<std::size_t>(picked.width) * picked.height);
-  for (int j = 0; j < picked.height; ++j)
-    for (int i = 0; i < picked.width; ++i)
-      std::copy_n(image.pixel(view.first_x + i * view.stride, view.first_y + j * view.stride), 4, picked.pixel(i, j));
-  return picked;
 }
 
 }  // namespace tetravox::reference
