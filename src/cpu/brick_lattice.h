@@ -3,29 +3,55 @@
 /// A brick's values as the marcher wants them: small enough to stay in the cache.
 
 #include "src/cpu/kernels/kernels.h"
+#include "src/grid/frame.h"
+#include "src/grid/separable_kernel.h"
 #include "src/grid/values.h"
+#include "src/optics/antiderivative_table.h"
 #include "tetravox/grid.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace tetravox::cpu {
 
+/// Where lattices come from, and how they are made: shared by all threads.
+struct LatticeField {
+  const grid::BlockReader* reader = nullptr;
+  std::int64_t padding = 0;                           ///< places of the reader before the grid's first value
+  const grid::SeparableKernel* kernel = nullptr;      ///< null: the values themselves
+  const optics::ControlPointTable* points = nullptr;  ///< set for pre-classification: densities instead of scalars
+  bool is_constant = false;                           ///< constant cells
+  float allowed_rate = 0.0f;                          ///< see MarchJob
+};
+
 /// Memory of one lattice at a time, used again and again.
 class BrickLattice {
  public:
   /// Box, cells and flags of a brick whose lattice cells are 2^level cells a side; no values yet.
-  MarchBrick describe(const PreparedGrid& grid, std::uint32_t brick, int level);
+  MarchBrick describe(const PreparedGrid& grid, const grid::GridFrame& frame, std::uint32_t brick, int level);
 
-  /// Reads the values of the brick described last, and points `brick` at them.
-  void fill(const grid::BlockReader& reader, const PreparedGrid& grid, bool is_constant, MarchBrick& brick);
+  /// Reads the values of the brick described last, and points `brick` at them. With a kernel the cells are divided
+  /// until the trilinear lattice is as near to the filtered field as `brick.steepness` asks, at most into 4^3.
+  void fill(const LatticeField& field, MarchBrick& brick);
 
  private:
-  void fill_records(const MarchBrick& brick);
+  static constexpr int kMostParts = 4;
 
-  grid::Block block_;
+  void place_planes(MarchBrick& brick, int parts);
+  void filter_values(const LatticeField& field, MarchBrick& brick);
+  void convolve(const grid::SeparableKernel& kernel, int parts, std::vector<float>& nodes);
+  float measure_bend(const std::vector<float>& nodes) const;
+  void fill_records(const MarchBrick& brick);
+  void fill_densities(const optics::ControlPointTable& points, const MarchBrick& brick);
+
+  grid::Block block_;  ///< nodes in `values_`
   std::int64_t stride_ = 1;
   std::vector<float> values_, records_;
+  std::array<std::vector<float>, 3> cell_planes_, planes_;  ///< of an uneven brick: as it is, and divided
+  // For filtering: values with a margin, and what becomes of them axis by axis.
+  grid::Block margin_block_;
+  std::vector<float> margin_, along_x_, along_y_;
 };
 
 }  // namespace tetravox::cpu

@@ -33,13 +33,13 @@ struct PixelBounds {
 };
 
 /// Pixels whose rays may meet the box: all of them where it reaches behind the eye.
-PixelBounds project_box(const grid::BrickBox& box, const GridView& view) {
+PixelBounds project_box(const grid::BrickBox& box, const grid::GridFrame& frame, const GridView& view) {
   const CameraFrame& camera = view.camera;
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
   for (int corner = 0; corner < 8; ++corner) {
     grid::Point at{};
     for (int axis = 0; axis < 3; ++axis)
-      at[axis] = static_cast<double>(box.first[axis] + (corner >> axis & 1 ? box.count[axis] : 0));
+      at[axis] = frame.plane(axis, box.first[axis] + (corner >> axis & 1 ? box.count[axis] : 0));
     const grid::Point seen = transform_point(view.camera_from_grid, at);
     double scale = 1.0 / camera.pixel_step;
     if (!camera.is_orthographic) {
@@ -69,8 +69,8 @@ std::array<std::uint32_t, 3> position_of(const PreparedGrid& grid, std::uint32_t
 }
 
 /// The bricks front to back: a counting sort by their distance from the eye's, in bricks along the axes.
-std::vector<std::uint32_t> order_bricks(const PreparedGrid& grid, const std::vector<std::uint32_t>& bricks,
-                                        const GridView& view) {
+std::vector<std::uint32_t> order_bricks(const PreparedGrid& grid, const grid::GridFrame& frame,
+                                        const std::vector<std::uint32_t>& bricks, const GridView& view) {
   const auto& counts = grid.bricks.counts;
   std::array<std::int64_t, 3> nearest{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -78,8 +78,8 @@ std::vector<std::uint32_t> order_bricks(const PreparedGrid& grid, const std::vec
     if (view.camera.is_orthographic)
       nearest[axis] = view.eye[axis] > 0.0 ? 0 : last;
     else
-      nearest[axis] = static_cast<std::int64_t>(
-          std::clamp(std::floor(view.eye[axis] / kBrickCells), 0.0, static_cast<double>(last)));
+      while (nearest[axis] < last && frame.plane(axis, (nearest[axis] + 1) * kBrickCells) <= view.eye[axis])
+        ++nearest[axis];
   }
   const auto distance = [&](std::uint32_t brick) {
     const auto at = position_of(grid, brick);
@@ -111,7 +111,8 @@ void for_each_tile(const PixelBounds& pixels, int tile_columns, const Visit& vis
 
 }  // namespace
 
-GridView make_grid_view(const PreparedGrid& grid, const Camera& camera, int width, int height) {
+GridView make_grid_view(const PreparedGrid& grid, const grid::GridFrame& frame, const Camera& camera, int width,
+                        int height) {
   GridView view;
   Vector3 center{};
   double half_extent = 0.0;
@@ -121,7 +122,6 @@ GridView make_grid_view(const PreparedGrid& grid, const Camera& camera, int widt
   }
   view.world_per_local = half_extent > 0.0 ? half_extent : 1.0;
   view.camera = make_camera_frame(center, view.world_per_local, camera, width, height);
-  const grid::GridFrame frame = grid::make_grid_frame(grid.data.shape);
   // Offsets are taken from the centre, so that a grid far from the origin loses nothing.
   std::array<double, 12> grid_from_offset{}, offset_from_camera{}, offset_from_grid{}, camera_from_offset{};
   for (int row = 0; row < 3; ++row)
@@ -142,16 +142,17 @@ GridView make_grid_view(const PreparedGrid& grid, const Camera& camera, int widt
   return view;
 }
 
-BrickBins bin_bricks(const PreparedGrid& grid, const std::vector<std::uint32_t>& bricks, const GridView& view) {
+BrickBins bin_bricks(const PreparedGrid& grid, const grid::GridFrame& frame, const std::vector<std::uint32_t>& bricks,
+                     const GridView& view) {
   BrickBins bins;
   bins.columns = (view.camera.width + kTileSize - 1) / kTileSize;
   bins.rows = (view.camera.height + kTileSize - 1) / kTileSize;
   bins.starts.assign(bins.tile_count() + 1, 0);
-  const std::vector<std::uint32_t> ordered = order_bricks(grid, bricks, view);
+  const std::vector<std::uint32_t> ordered = order_bricks(grid, frame, bricks, view);
   std::vector<PixelBounds> pixels(ordered.size());
   support::parallel_chunks(ordered.size(), 1 << 10, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      pixels[i] = project_box(grid::box_of_brick(grid.data.shape, position_of(grid, ordered[i])), view);
+      pixels[i] = project_box(grid::box_of_brick(grid.data.shape, position_of(grid, ordered[i])), frame, view);
   });
   for (const PixelBounds& seen : pixels)
     for_each_tile(seen, bins.columns, [&](std::size_t tile, const TileBounds&) { ++bins.starts[tile + 1]; });

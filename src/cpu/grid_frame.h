@@ -23,7 +23,8 @@ struct GridView {
   double world_per_local = 1.0;
 };
 
-GridView make_grid_view(const PreparedGrid& grid, const Camera& camera, int width, int height);
+GridView make_grid_view(const PreparedGrid& grid, const grid::GridFrame& frame, const Camera& camera, int width,
+                        int height);
 
 /// A brick with the pixels of a tile that may see it.
 struct BinnedBrick {
@@ -45,6 +46,7 @@ struct BrickBins {
 
 /// Orders `bricks` (indices) front to back and sorts them into tiles. Along any ray from the eye the number of bricks
 /// between a brick and the eye's, counted along the axes and summed, ascends: that number is the order.
-BrickBins bin_bricks(const PreparedGrid& grid, const std::vector<std::uint32_t>& bricks, const GridView& view);
+BrickBins bin_bricks(const PreparedGrid& grid, const grid::GridFrame& frame, const std::vector<std::uint32_t>& bricks,
+                     const GridView& view);
 
 }  // namespace tetravox::cpu

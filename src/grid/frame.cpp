@@ -32,6 +32,13 @@ void validate_shape(const GridShape& shape) {
     if (!(shape.spacing[axis] > 0.0) || !std::isfinite(shape.spacing[axis]))
       fail("has a spacing " + name + " that is not a positive number");
     if (!std::isfinite(shape.origin[axis])) fail("has an origin that is not finite");
+    const std::vector<double>& coordinates = shape.coordinates[axis];
+    if (!coordinates.empty() && coordinates.size() != shape.dimensions[axis])
+      fail("has " + std::to_string(coordinates.size()) + " coordinates " + name + " for " +
+           std::to_string(shape.dimensions[axis]) + " points");
+    for (std::size_t i = 0; i < coordinates.size(); ++i)
+      if (!std::isfinite(coordinates[i]) || (i > 0 && !(coordinates[i] > coordinates[i - 1])))
+        fail("has coordinates " + name + " that do not ascend, at point " + std::to_string(i));
   }
   for (const double element : shape.direction)
     if (!std::isfinite(element)) fail("has a direction matrix that is not finite");
@@ -43,9 +50,17 @@ void validate_shape(const GridShape& shape) {
 GridFrame make_grid_frame(const GridShape& shape) {
   GridFrame frame;
   frame.origin = shape.origin;
-  for (int row = 0; row < 3; ++row)
-    for (int axis = 0; axis < 3; ++axis)
-      frame.world_from_grid[3 * row + axis] = shape.direction[3 * row + axis] * shape.spacing[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<double>& coordinates = shape.coordinates[axis];
+    double spacing = shape.spacing[axis];
+    if (!coordinates.empty()) {
+      const double first = coordinates.front();
+      spacing = (coordinates.back() - first) / static_cast<double>(coordinates.size() - 1);
+      for (const double at : coordinates) frame.planes[axis].push_back(static_cast<float>((at - first) / spacing));
+      for (int row = 0; row < 3; ++row) frame.origin[row] += shape.direction[3 * row + axis] * first;
+    }
+    for (int row = 0; row < 3; ++row) frame.world_from_grid[3 * row + axis] = shape.direction[3 * row + axis] * spacing;
+  }
   frame.grid_from_world = inverse(frame.world_from_grid);
   return frame;
 }

@@ -100,6 +100,8 @@ BrickSummaries summarize_bricks(const GridData& grid, const ScalarFrame& frame, 
   for (auto& level : bricks.deviation) level.resize(count);
   const BlockReader reader(grid, frame);
   const bool is_point = grid.association == Association::kPoint;
+  const bool is_even = std::all_of(grid.shape.coordinates.begin(), grid.shape.coordinates.end(),
+                                   [](const std::vector<double>& axis) { return axis.empty(); });
 
   support::parallel_chunks(count / row, 1, [&](std::size_t begin, std::size_t end) {
     BrickValues brick;
@@ -118,7 +120,7 @@ BrickSummaries summarize_bricks(const GridData& grid, const ScalarFrame& frame, 
       summarize_range(brick, size, bricks.min[index], bricks.max[index], has_missing);
       bricks.has_missing[index] = has_missing;
       const bool is_constant = bricks.min[index] == bricks.max[index] && !has_missing;
-      const bool is_whole = is_point && size == kMostNodes && !has_missing;
+      const bool is_whole = is_point && is_even && size == kMostNodes && !has_missing;
       bricks.deviation[0][index] = is_constant || !is_point ? 0.0f : bound_bend(brick, 1);
       for (int level = 1; level < 4; ++level) {
         const std::int64_t stride = std::int64_t{1} << level;

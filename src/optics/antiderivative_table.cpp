@@ -338,4 +338,22 @@ ControlPointTable build_control_point_table(const OpticalFunction& function, con
   return table;
 }
 
+std::array<float, 4> eval_densities(const ControlPointTable& points, std::size_t interval, float scalar) {
+  const float x = scalar - points.references[interval];
+  const auto value = [&](std::size_t i) {
+    return points.densities_front[interval][i] + points.slopes[interval][i] * x;
+  };
+  const float rho = std::max(value(0), 0.0f);
+  return {rho, rho * value(1), rho * value(2), rho * value(3)};
+}
+
+std::array<float, 4> eval_densities(const ControlPointTable& points, float scalar) {
+  if (!(scalar == scalar)) return {scalar, scalar, scalar, scalar};
+  const auto last = static_cast<float>(points.first_interval.size() - 1);
+  const float bucket = std::clamp((scalar - points.first) * points.buckets_per_scalar, 0.0f, last);
+  auto interval = static_cast<std::size_t>(points.first_interval[static_cast<std::size_t>(bucket)]);
+  while (points.starts[interval + 1] <= scalar) ++interval;
+  return eval_densities(points, interval, scalar);
+}
+
 }  // namespace tetravox::optics

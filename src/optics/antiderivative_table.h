@@ -90,4 +90,9 @@ struct ControlPointTable {
 
 ControlPointTable build_control_point_table(const OpticalFunction& function, const ScalarMap& map);
 
+/// rho, rho * red, rho * green, rho * blue at a stored scalar; NaNs for NaN.
+std::array<float, 4> eval_densities(const ControlPointTable& points, float scalar);
+/// The same by the line of one interval.
+std::array<float, 4> eval_densities(const ControlPointTable& points, std::size_t interval, float scalar);
+
 }  // namespace tetravox::optics

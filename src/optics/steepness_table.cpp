@@ -13,15 +13,6 @@ constexpr int kBins = SteepnessTable::kBins;
 
 using Densities = std::array<float, 4>;  // rho, rho * red, rho * green, rho * blue
 
-Densities eval_densities(const ControlPointTable& points, std::size_t interval, float scalar) {
-  const float x = scalar - points.references[interval];
-  const auto value = [&](std::size_t i) {
-    return points.densities_front[interval][i] + points.slopes[interval][i] * x;
-  };
-  const float rho = std::max(value(0), 0.0f);
-  return {rho, rho * value(1), rho * value(2), rho * value(3)};
-}
-
 /// Bound on the change of densities in one interval between two scalars.
 float bound_slope(const ControlPointTable& points, std::size_t interval, float low, float high) {
   const auto& slope = points.slopes[interval];
@@ -63,8 +54,9 @@ void build_steepness_table(const ControlPointTable& points, float min, float max
   std::size_t interval = 0;
   for (int bin = 0; bin < kBins; ++bin) {
     // A bin reaches a little over its ends, so that rounding never loses a control point.
-    const float low = min + width * (static_cast<float>(bin) - 0.01f);
-    const float high = min + width * (static_cast<float>(bin) + 1.01f);
+    float low = min + width * (static_cast<float>(bin) - 0.01f), high = min + width * (static_cast<float>(bin) + 1.01f);
+    if (bin == 0) low -= max - min;  // filters may leave the range of the values, by less than its width
+    if (bin == kBins - 1) high += max - min;
     while (interval > 0 && points.starts[interval] > low) --interval;
     while (interval + 1 < intervals && points.starts[interval + 1] < low) ++interval;
     float& steepness = table.steepness[static_cast<std::size_t>(bin)];

@@ -19,6 +19,7 @@
 #include "src/cpu/kernels/integrators-inl.h"
 #include "src/cpu/kernels/march-inl.h"
 #include "src/cpu/kernels/rasterize-inl.h"
+#include "src/cpu/kernels/sample-inl.h"
 #include "src/cpu/kernels/walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -33,6 +34,11 @@ WalkStatistics walk(const WalkJob& job) {
 template <class Integrator>
 std::uint64_t march(const MarchJob& job, int count) {
   return Marcher<Integrator>(job).run(count);
+}
+
+template <class Sampler>
+std::uint64_t sample(const MarchJob& job, int count) {
+  return RateMarcher<Sampler>(job).run(count);
 }
 
 Kernels make_kernels() {
@@ -50,6 +56,11 @@ Kernels make_kernels() {
   kernels.march_partial = &march<PartialIntegrator>;
   kernels.march_post = &march<PostIntegrator>;
   kernels.march_cells = &march_cells;
+  kernels.march_densities = &march_densities;
+  kernels.sample_antiderivative = &sample<ScalarSampler<AntiderivativeIntegrator>>;
+  kernels.sample_partial = &sample<ScalarSampler<PartialIntegrator>>;
+  kernels.sample_post = &sample<ScalarSampler<CellIntegrator>>;
+  kernels.sample_densities = &sample<DensitySampler>;
   return kernels;
 }
 

@@ -107,6 +107,9 @@ struct MarchRays {
   alignas(64) float world_per_z[kCount];
   alignas(64) float z_far[kCount];  ///< where the ray ends: infinite, or below everything once it is settled
   alignas(64) float red[kCount], green[kCount], blue[kCount], transmittance[kCount];
+  // At a fixed rate: where the ray leaves the grid, the sample before (depth, scalar or densities), the next one's
+  // number.
+  alignas(64) float z_exit[kCount], z_sample[kCount], sample[4][kCount], next_number[kCount];
   /// Those that meet the brick at hand, by the number of cells that they cross.
   alignas(64) std::int32_t ray[kCount + kPadding];
   alignas(64) float z_enter[kCount + kPadding], z_leave[kCount + kPadding];
@@ -120,9 +123,12 @@ struct MarchBrick {
   float lower[3] = {}, upper[3] = {};  ///< grid coordinates
   bool is_last[3] = {};                ///< whether the brick ends the grid along the axis
   std::int32_t cells[3] = {1, 1, 1};
-  TileBounds bounds;  ///< the pixels of the tile that may see it, counted from the tile's corner
+  bool is_uneven = false;
+  const float* planes[3] = {};  ///< [cells + 1] grid coordinates of the planes, where the brick is uneven
+  TileBounds bounds;            ///< the pixels of the tile that may see it, counted from the tile's corner
   const float* records =
       nullptr;  ///< [z nodes][y cells][x cells][4]: the corners (x, y), (x+1, y), (x, y+1), (x+1, y+1)
+  const float* densities = nullptr;  ///< [z nodes][y nodes][x nodes][4] instead: rho, rho * colour
   const float* constants = nullptr;  ///< [z cells][y cells][x cells] instead, where the scalar is constant in each cell
   bool has_missing = false;          ///< whether a corner is not a number
   float steepness = 0.0f;            ///< largest change of density with the scalar in the brick
@@ -136,7 +142,8 @@ struct MarchJob {
   float allowed_rate = 0.0f;  ///< error in colour for one unit of world length that a segment may have
   float most_pieces = 12.0f;  ///< that a cell is cut into
   float z_near = 0.0f;
-  bool is_constant = false;  ///< whether the scalar is constant in each cell
+  float sample_distance = 0.0f;  ///< world length between samples at a fixed rate
+  bool is_constant = false;      ///< whether the scalar is constant in each cell
   bool use_early_ray_termination = true;
 };
 
@@ -145,6 +152,7 @@ struct MarchStart {
   const RayGrid* rays = nullptr;
   int column = 0, row = 0;          ///< of the tile's corner
   float grid_from_camera[12] = {};  ///< rows of a 3 x 4 matrix
+  float upper[3] = {};              ///< of the grid; its lower corner is 0
   MarchRays* tile = nullptr;
 };
 
@@ -165,6 +173,12 @@ struct Kernels {
   std::uint64_t (*march_gentle_antiderivative)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*march_partial)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*march_post)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*march_densities)(const MarchJob& job, int count) = nullptr;  ///< pre-classification
+  /// At a fixed rate: pre-integrated from sample to sample, post-classified, pre-classified.
+  std::uint64_t (*sample_antiderivative)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*sample_partial)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*sample_post)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*sample_densities)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*march_cells)(const MarchJob& job,
                                int count) = nullptr;           ///< constant cells, exact with every integrator
   WalkStatistics (*walk_cells)(const WalkJob& job) = nullptr;  ///< cell data, exact with every integrator

@@ -13,7 +13,7 @@
 #include "src/cpu/kernels/vector_math-inl.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
@@ -41,6 +41,15 @@ inline void start_march(const MarchStart& start) {
       tile.world_per_z[i] = grid.world_per_local * std::sqrt(1.0f + x_slope * x_slope + y_slope * y_slope);
       const bool is_inside = start.column + column < grid.width && start.row + row < grid.height;
       tile.z_far[i] = is_inside ? kNever : -kNever;
+      tile.z_exit[i] = kNever;
+      for (int axis = 0; axis < 3; ++axis) {
+        const float direction = tile.direction[axis][i];
+        if (std::abs(direction) < kParallel) continue;
+        const float inverse = 1.0f / direction;
+        tile.z_exit[i] = std::min(tile.z_exit[i], std::max((0.0f - tile.origin[axis][i]) * inverse,
+                                                           (start.upper[axis] - tile.origin[axis][i]) * inverse));
+      }
+      tile.z_sample[i] = -kNever;
       tile.red[i] = tile.green[i] = tile.blue[i] = 0.0f;
       tile.transmittance[i] = 1.0f;
     }
@@ -120,7 +129,9 @@ struct LatticeRays {
   Float front, leave, world_per_z;
   Mask alive;
 
-  LatticeRays(const MarchRays& rays, const MarchBrick& brick, int first, int count) {
+  /// Records are those of cells, or of nodes: `nodes_more` along each axis.
+  LatticeRays(const MarchRays& rays, const MarchBrick& brick, int first, int count, int nodes_more = 0)
+      : brick_(brick) {
     const Int ray = hn::Load(kInt, rays.ray + first);
     front = hn::Load(kFloat, rays.z_enter + first);
     leave = hn::Load(kFloat, rays.z_leave + first);
@@ -148,9 +159,10 @@ struct LatticeRays {
       rate[axis] = hn::IfThenElse(parallel, constant(0.0f), hn::Neg(direction));
       stride[axis] = hn::IfThenElse(int_mask(rising), hn::Set(kInt, axis_stride), hn::Set(kInt, -axis_stride));
       cell = hn::Add(cell, hn::Mul(hn::ConvertTo(kInt, index), hn::Set(kInt, axis_stride)));
-      axis_stride *= brick.cells[axis];
+      axis_stride *= brick.cells[axis] + nodes_more;
     }
     last_cell = hn::Set(kInt, axis_stride - 1);
+    if (brick.is_uneven) start_uneven(rays, ray, nodes_more);
   }
 
   /// Depth at which the rays leave their cells.
@@ -166,6 +178,7 @@ struct LatticeRays {
       next[axis] = hn::Add(next[axis], hn::IfThenElseZero(crossed[axis], step[axis]));
       cell = hn::Add(cell, hn::IfThenElseZero(int_mask(crossed[axis]), stride[axis]));
     }
+    if (brick_.is_uneven) advance_uneven(crossed);
     // Rounding may carry a ray a hair beyond the brick: stay in cells that exist.
     cell = hn::Min(hn::Max(cell, hn::Zero(kInt)), last_cell);
     alive = hn::And(alive, hn::Lt(back, leave));
@@ -179,7 +192,56 @@ struct LatticeRays {
   }
 
  private:
+  /// Finds the cells again where the planes are not equally spaced.
+  HWY_NOINLINE void start_uneven(const MarchRays& rays, Int ray, int nodes_more) {
+    cell = hn::Zero(kInt);
+    std::int32_t axis_stride = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      origins[axis] = hn::GatherIndex(kFloat, rays.origin[axis], ray);
+      directions[axis] = hn::GatherIndex(kFloat, rays.direction[axis], ray);
+      const Float at = multiply_add(directions[axis], front, origins[axis]);
+      indices[axis] = hn::Zero(kInt);
+      for (int i = 1; i < brick_.cells[axis]; ++i)
+        indices[axis] =
+            hn::Add(indices[axis],
+                    hn::IfThenElseZero(int_mask(hn::Ge(at, constant(brick_.planes[axis][i]))), hn::Set(kInt, 1)));
+      find_plane(axis);
+      const Mask parallel = hn::Lt(hn::Abs(directions[axis]), constant(kParallel));
+      const Float low = hn::GatherIndex(kFloat, brick_.planes[axis], indices[axis]);
+      const Float high = hn::GatherIndex(kFloat, brick_.planes[axis] + 1, indices[axis]);
+      const Float place = hn::Div(hn::Sub(at, low), hn::Sub(high, low));
+      start[axis] = hn::IfThenElse(parallel, place, start[axis]);
+      cell = hn::Add(cell, hn::Mul(indices[axis], hn::Set(kInt, axis_stride)));
+      axis_stride *= brick_.cells[axis] + nodes_more;
+    }
+  }
+
+  HWY_NOINLINE void advance_uneven(const Mask crossed[3]) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Mask rising = hn::Ge(directions[axis], constant(0.0f));
+      const Int sign = hn::IfThenElse(int_mask(rising), hn::Set(kInt, 1), hn::Set(kInt, -1));
+      const Int moved = hn::Add(indices[axis], hn::IfThenElseZero(int_mask(crossed[axis]), sign));
+      indices[axis] = hn::Min(hn::Max(moved, hn::Zero(kInt)), hn::Set(kInt, brick_.cells[axis] - 1));
+      find_plane(axis);
+    }
+  }
+
+  /// The next plane, and how fast the place in the cell changes.
+  HWY_INLINE void find_plane(int axis) {
+    const Mask parallel = hn::Lt(hn::Abs(directions[axis]), constant(kParallel));
+    const Mask rising = hn::Ge(directions[axis], constant(0.0f));
+    const Float low = hn::GatherIndex(kFloat, brick_.planes[axis], indices[axis]);
+    const Float high = hn::GatherIndex(kFloat, brick_.planes[axis] + 1, indices[axis]);
+    const Float direction = hn::IfThenElse(parallel, constant(1.0f), directions[axis]);
+    const Float depth = hn::Div(hn::Sub(hn::IfThenElse(rising, high, low), origins[axis]), direction);
+    next[axis] = hn::IfThenElse(parallel, constant(kNever), depth);
+    rate[axis] = hn::IfThenElse(parallel, constant(0.0f), hn::Neg(hn::Div(direction, hn::Sub(high, low))));
+  }
+
+  const MarchBrick& brick_;
   Int last_cell;
+  Float origins[3], directions[3];  // of uneven bricks, like `indices`
+  Int indices[3];
 };
 
 /// The corners of the cells that a vector of rays is in.
