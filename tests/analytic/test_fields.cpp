@@ -1,19 +1,16 @@
-/// Constant and linear fields in a box, drawn through every integrator and kind of cell.
+/// Constant and linear fields in a box, drawn through every integrator and kind of cell, and as a grid.
 
-#include "tests/analytic/closed_form.h"
-#include "tests/common/draw.h"
+#include "tests/analytic/show.h"
+#include "tests/common/grid_builder.h"
 #include "tests/common/mesh_builder.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 namespace tetravox::analytic {
 namespace {
-
-using tests::BoxOptions;
-using tests::make_box;
-using tests::make_settings;
 
 const Vector3 kLower{-1.0, -0.8, -0.9};
 const Vector3 kUpper{1.1, 0.9, 0.7};
@@ -23,58 +20,43 @@ double linear_field(const Vector3& p) { return 0.5 + 0.21 * p[0] - 0.13 * p[1] +
 
 struct Case {
   Integrator integrator;
-  CellType type;
+  std::optional<CellType> type;  ///< empty: a grid
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
-  *out << name_of(c.integrator) << ", " << cell_type_name(static_cast<std::uint8_t>(c.type));
+  *out << name_of(c.integrator) << ", " << (c.type ? cell_type_name(static_cast<std::uint8_t>(*c.type)) : "grid");
 }
 
 class Fields : public ::testing::TestWithParam<Case> {
  protected:
-  MeshData box(const tests::Field& field) const {
-    BoxOptions options;
+  tests::Body box(const tests::Field& field) const {
+    if (!GetParam().type) {
+      tests::GridOptions options;
+      options.dimensions = {6, 5, 7};
+      options.lower = kLower;
+      options.upper = kUpper;
+      return tests::make_grid(options, field);
+    }
+    tests::BoxOptions options;
     options.bricks = {5, 4, 6};
     options.lower = kLower;
     options.upper = kUpper;
-    options.type = GetParam().type;
-    return make_box(options, field);
+    options.type = *GetParam().type;
+    return tests::make_box(options, field);
   }
   /// Draws the box from all standard cameras and holds each picture against `expected`.
   void expect_shown(const tests::Field& field, const OpticalFunction& function,
                     const std::function<Rgba(const Ray&, const Chord&)>& expected, const Tolerance& tolerance) const {
-    const PreparedMesh mesh = prepare_mesh(box(field));
-    RenderSettings settings = make_settings(GetParam().integrator, 61, 43);
-    settings.samples = 256;
-    settings.use_early_ray_termination = false;
-    for (const auto& [name, camera] : standard_cameras()) {
-      const Image image = render(mesh, function, camera, settings);
-      EXPECT_TRUE(shows(
-          image, camera,
-          [&](const Ray& ray) {
-            const Chord chord = intersect_box(ray, kLower, kUpper);
-            return chord.length() > 0.0 ? expected(ray, chord) : Rgba{};
-          },
-          tolerance))
-          << name;
-    }
+    analytic::expect_shown(
+        box(field), function, make_careful_settings(GetParam().integrator),
+        [&](const Ray& ray) {
+          const Chord chord = intersect_box(ray, kLower, kUpper);
+          return chord.length() > 0.0 ? expected(ray, chord) : Rgba{};
+        },
+        tolerance);
   }
-  /// What the integrator promises for fields that vary: `partial` is exact, `antiderivative` errs in colour by a few
-  /// times its tolerance, `post` by its samples.
-  Tolerance tolerance(double sampled) const {
-    switch (GetParam().integrator) {
-      case Integrator::kPartial:
-        return {2e-5, 2e-5};
-      case Integrator::kAntiderivative:
-        return {2e-3, 2e-4};
-      default:
-        return {sampled, sampled};
-    }
-  }
-  /// Constant fields are exact but for rounding, which grows with the number of samples.
-  Tolerance constant_tolerance() const {
-    return GetParam().integrator == Integrator::kPost ? Tolerance{5e-5, 5e-5} : Tolerance{1e-5, 1e-5};
-  }
+  Tolerance tolerance(double sampled) const { return varying_tolerance(GetParam().integrator, sampled); }
+  Tolerance constant_tolerance() const { return analytic::constant_tolerance(GetParam().integrator); }
 };
 
 TEST_P(Fields, ConstantFieldAbsorbsByItsLength) {
@@ -136,9 +118,9 @@ TEST_P(Fields, ConstantExtinctionWithLinearColourHasTheClosedForm) {
 TEST_P(Fields, WhiteIsAsBrightAsItIsOpaque) {
   OpticalFunction function;
   for (int i = 0; i <= 20; ++i) function.points.push_back({0.05 * i, 3.0 + 3.0 * std::sin(2.1 * i), {1, 1, 1}});
-  const PreparedMesh mesh = prepare_mesh(box(linear_field));
+  const tests::Body body = box(linear_field);
   for (const auto& [name, camera] : standard_cameras()) {
-    const Image image = render(mesh, function, camera, make_settings(GetParam().integrator, 61, 43));
+    const Image image = body.draw(function, camera, tests::make_settings(GetParam().integrator, 61, 43));
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
       ASSERT_NEAR(image.pixels[i], image.pixels[i - i % 4 + 3], 2e-5) << name << " value " << i;
   }
@@ -188,17 +170,19 @@ TEST_P(Fields, StepsCutTheChord) {
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
-  for (const Integrator integrator : tests::kAllIntegrators)
-    for (const CellType type : {CellType::kTetrahedron, CellType::kVoxel, CellType::kHexahedron, CellType::kWedge,
-                                CellType::kPyramid, CellType::kPolyhedron})
-      if (type == CellType::kHexahedron || integrator == Integrator::kAntiderivative)
-        cases.push_back({integrator, type});
+  for (const CellType type :
+       {CellType::kTetrahedron, CellType::kVoxel, CellType::kWedge, CellType::kPyramid, CellType::kPolyhedron})
+    cases.push_back({Integrator::kAntiderivative, type});
+  for (const Integrator integrator : tests::kAllIntegrators) {
+    cases.push_back({integrator, CellType::kHexahedron});
+    cases.push_back({integrator, std::nullopt});
+  }
   return cases;
 }
 
 INSTANTIATE_TEST_SUITE_P(Box, Fields, ::testing::ValuesIn(all_cases()), [](const auto& test) {
-  std::string name = name_of(test.param.integrator) + "_" + std::to_string(static_cast<int>(test.param.type));
-  return name;
+  const Case& c = test.param;
+  return name_of(c.integrator) + "_" + (c.type ? std::to_string(static_cast<int>(*c.type)) : "grid");
 });
 
 }  // namespace

@@ -28,16 +28,24 @@ inline Image draw(const MeshData& mesh, const OpticalFunction& function, const C
                   const RenderSettings& settings) {
   return render(prepare_mesh(mesh), function, camera, settings);
 }
+inline Image draw(const GridData& grid, const OpticalFunction& function, const Camera& camera,
+                  const RenderSettings& settings) {
+  return render(prepare_grid(grid), function, camera, settings);
+}
 
 /// One picture with its statistics.
-inline Image render_with(const PreparedMesh& mesh, const OpticalFunction& function, const Camera& camera,
-                         const RenderSettings& settings, RenderStatistics& statistics) {
-  Renderer renderer(mesh);
+template <class Prepared>
+Image render_with(const Prepared& prepared, const OpticalFunction& function, const Camera& camera,
+                  const RenderSettings& settings, RenderStatistics& statistics) {
+  Renderer renderer(prepared);
   renderer.set_transfer_function(function);
   return renderer.render(camera, settings, &statistics);
 }
 
 inline constexpr Integrator kExactIntegrators[] = {Integrator::kAntiderivative, Integrator::kPartial};
 inline constexpr Integrator kAllIntegrators[] = {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kPost};
+/// Grids know one more.
+inline constexpr Integrator kGridIntegrators[] = {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kPost,
+                                                  Integrator::kPre};
 
 }  // namespace tetravox::tests
