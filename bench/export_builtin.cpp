@@ -1,12 +1,16 @@
-/// Writes an embedded dataset as a VTK XML unstructured grid (appended, raw), so that other programs can draw it.
+/// Writes an embedded dataset, so that other programs can draw it: a mesh as a VTK XML unstructured grid (appended,
+/// raw), a grid as a RAW file, in a directory under the name that tells its layout. Prints the file's path.
 ///
 ///     export_builtin buckyball out.vtu
+///     export_builtin "turbulence?size=64" out        writes out/turbulence_64x64x64_uint8.raw
 
 #include "tetravox/dataset.h"
 #include "tetravox/error.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <span>
 #include <string>
@@ -15,8 +19,10 @@
 namespace {
 
 using tetravox::Association;
+using tetravox::Dataset;
 using tetravox::Error;
 using tetravox::ErrorCode;
+using tetravox::GridData;
 using tetravox::MeshData;
 
 /// The appended section: every block is its size in bytes (uint64) and its bytes.
@@ -43,6 +49,12 @@ class AppendedData {
 template <class T>
 std::vector<std::int64_t> to_int64(std::span<const T> values) {
   return {values.begin(), values.end()};
+}
+
+/// @throws Error (kCannotWrite) where not everything was written.
+void finish(std::ofstream& file, const std::string& path) {
+  if (!file.flush())
+    throw Error(ErrorCode::kCannotWrite, path + " could not be written: check the folder and the disk");
 }
 
 void write_vtu(const std::string& path, const MeshData& mesh) {
@@ -74,19 +86,48 @@ void write_vtu(const std::string& path, const MeshData& mesh) {
        << cells << "</Cells>\n"
        << "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_" << data.bytes()
        << "\n</AppendedData>\n</VTKFile>\n";
-  if (!file.flush())
-    throw Error(ErrorCode::kCannotWrite, path + " could not be written: check the folder and the disk");
+  finish(file, path);
+}
+
+/// "NAME_256x256x256_uint8.raw", the convention of the Open SciVis Datasets.
+std::string raw_name(const Dataset& dataset) {
+  std::string name = dataset.info.source.substr(dataset.info.source.find(':') + 1);
+  name.resize(std::min(name.size(), name.find('?')));
+  char separator = '_';
+  for (const std::uint32_t points : dataset.grid.shape.dimensions) {
+    name += separator + std::to_string(points);
+    separator = 'x';
+  }
+  return name + "_" + tetravox::scalar_type_name(dataset.grid.type) + ".raw";
+}
+
+void write_raw(const std::string& path, const GridData& grid) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(grid.values.data()), static_cast<std::streamsize>(grid.values.size()));
+  finish(file, path);
+}
+
+/// Writes to `out`, or below it where it is a directory.
+std::string write_dataset(const Dataset& dataset, const std::string& out) {
+  if (!dataset.is_grid()) {
+    write_vtu(out, dataset.mesh);
+    return out;
+  }
+  const bool is_directory = std::filesystem::is_directory(out);
+  const std::string path = is_directory ? (std::filesystem::path(out) / raw_name(dataset)).string() : out;
+  write_raw(path, dataset.grid);
+  return path;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fprintf(stderr, "usage: export_builtin NAME OUT.vtu\n");
+    std::fprintf(stderr, "usage: export_builtin MESH OUT.vtu\n       export_builtin GRID DIRECTORY|OUT.raw\n");
     return 2;
   }
   try {
-    write_vtu(argv[2], tetravox::make_builtin(argv[1]).mesh);
+    std::printf("%s\n", write_dataset(tetravox::make_builtin(argv[1]), argv[2]).c_str());
   } catch (const Error& error) {
     std::fprintf(stderr, "export_builtin: %s\n", error.what());
     return 1;

@@ -1,28 +1,20 @@
 #include "src/mesh/builtin.h"
 
+#include "src/support/check.h"
 #include "src/support/memory.h"
 #include "src/support/threads.h"
-#include "tetravox/error.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
-#include <string_view>
 
-namespace tetravox {
-namespace mesh {
+namespace tetravox::mesh {
 namespace {
 
-constexpr std::uint64_t kFewestCells = 5;
-constexpr std::uint64_t kMostCells = 500'000'000;
-
-/// An embedded dataset: how it is called, what it holds, how it is made.
+/// An embedded mesh: how it is called, what it holds, how it is made.
 struct Builtin {
-  const char* name;
-  const char* description;
-  std::uint64_t default_cells;
+  BuiltinMeshEntry entry;
   CellType cell_type;
   std::vector<BuiltinArray> arrays;
   BuiltinStorage (*make_mesh)(std::uint64_t cells);
@@ -31,71 +23,22 @@ struct Builtin {
 
 const std::vector<Builtin>& builtins() {
   static const std::vector<Builtin> all = {
-      {"sphere",
-       "a ball of tetrahedra with the distance to its centre",
-       2560,
+      {{"sphere", "a ball of tetrahedra with the distance to its centre", 2560},
        CellType::kTetrahedron,
        {{"distance", Association::kPoint}},
        make_sphere_mesh,
        [](BuiltinStorage& storage, std::size_t) { fill_sphere_scalars(storage); }},
-      {"buckyball",
-       "a density of 60 Gaussians at the vertices of C60, on tetrahedra",
-       177'000,
+      {{"buckyball", "a density of 60 Gaussians at the vertices of C60, on tetrahedra", 177'000},
        CellType::kTetrahedron,
        {{"density", Association::kPoint}},
        make_buckyball_mesh,
        [](BuiltinStorage& storage, std::size_t) { fill_buckyball_scalars(storage); }},
-      {"duct",
-       "flow around a pin in a bent duct, on graded hexahedra",
-       33'000,
+      {{"duct", "flow around a pin in a bent duct, on graded hexahedra", 33'000},
        CellType::kHexahedron,
        {{"pressure", Association::kPoint}, {"speed", Association::kPoint}, {"volume", Association::kCell}},
        make_duct_mesh,
        fill_duct_scalars}};
   return all;
-}
-
-/// What "builtin:NAME?cells=N" asks for.
-struct BuiltinRequest {
-  const Builtin* builtin = nullptr;
-  std::uint64_t cells = 0;
-};
-
-std::uint64_t parse_cells(const std::string& name, std::string_view text) {
-  std::uint64_t cells = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), cells);
-  if (error != std::errc() || end != text.data() + text.size() || cells < kFewestCells || cells > kMostCells)
-    throw Error(ErrorCode::kInvalidArgument, name + ": cells=" + std::string(text) + " is not a number from " +
-                                                 std::to_string(kFewestCells) + " to " + std::to_string(kMostCells));
-  return cells;
-}
-
-BuiltinRequest parse_request(const std::string& name) {
-  std::string_view rest = name;
-  if (rest.starts_with("builtin:")) rest.remove_prefix(std::string_view("builtin:").size());
-  const std::size_t question = rest.find('?');
-  const std::string_view wanted = rest.substr(0, question);
-  BuiltinRequest request;
-  std::string names;
-  for (const Builtin& builtin : builtins()) {
-    if (wanted == builtin.name) request.builtin = &builtin;
-    names += (names.empty() ? "" : ", ") + std::string(builtin.name);
-  }
-  if (!request.builtin)
-    throw Error(ErrorCode::kInvalidArgument,
-                "there is no embedded dataset '" + std::string(wanted) + "'; there are: " + names);
-  request.cells = request.builtin->default_cells;
-  if (question == std::string_view::npos) return request;
-  rest.remove_prefix(question + 1);
-  while (true) {
-    const std::string_view option = rest.substr(0, rest.find('&'));
-    if (!option.starts_with("cells="))
-      throw Error(ErrorCode::kInvalidArgument,
-                  name + ": '" + std::string(option) + "' is not an option; there is: cells=N");
-    request.cells = parse_cells(name, option.substr(std::string_view("cells=").size()));
-    if (option.size() == rest.size()) return request;
-    rest.remove_prefix(option.size() + 1);
-  }
 }
 
 ValueRange range_of(const std::vector<double>& values, std::size_t first, std::size_t stride) {
@@ -107,11 +50,11 @@ ValueRange range_of(const std::vector<double>& values, std::size_t first, std::s
   return range;
 }
 
-/// Everything known of the dataset; leaves the values of array `chosen` in `storage`.
+/// Everything known of the mesh; leaves the values of array `chosen` in `storage`.
 DatasetInfo describe_builtin(const std::string& source, const Builtin& builtin, BuiltinStorage& storage,
                              const ArrayRequest& request, std::size_t& chosen) {
   DatasetInfo info;
-  info.source = source.rfind("builtin:", 0) == 0 ? source : "builtin:" + source;
+  info.source = source;
   info.format = "embedded";
   info.point_count = storage.points.size() / 3;
   info.cell_count = storage.cell_types.size();
@@ -150,14 +93,24 @@ BuiltinStorage make_builtin_storage(std::uint64_t points, std::uint64_t cells, C
   return storage;
 }
 
-}  // namespace mesh
+const std::vector<BuiltinMeshEntry>& builtin_meshes() {
+  static const std::vector<BuiltinMeshEntry> entries = [] {
+    std::vector<BuiltinMeshEntry> all;
+    for (const Builtin& builtin : builtins()) all.push_back(builtin.entry);
+    return all;
+  }();
+  return entries;
+}
 
-Dataset make_builtin(const std::string& name, const ArrayRequest& request) {
-  const mesh::BuiltinRequest wanted = mesh::parse_request(name);
-  const auto storage = std::make_shared<mesh::BuiltinStorage>(wanted.builtin->make_mesh(wanted.cells));
+Dataset make_builtin_mesh(const BuiltinMeshEntry& entry, std::uint64_t cells, const ArrayRequest& request,
+                          const std::string& source) {
+  const auto builtin = std::find_if(builtins().begin(), builtins().end(),
+                                    [&](const Builtin& one) { return one.entry.name == entry.name; });
+  TETRAVOX_CHECK_LT(std::distance(builtins().begin(), builtin), std::ssize(builtins()));
+  const auto storage = std::make_shared<BuiltinStorage>(builtin->make_mesh(cells));
   Dataset dataset;
   std::size_t chosen = 0;
-  dataset.info = mesh::describe_builtin(name, *wanted.builtin, *storage, request, chosen);
+  dataset.info = describe_builtin(source, *builtin, *storage, request, chosen);
   dataset.mesh.points = storage->points;
   dataset.mesh.cell_types = storage->cell_types;
   dataset.mesh.cell_offsets = storage->cell_offsets;
@@ -169,14 +122,4 @@ Dataset make_builtin(const std::string& name, const ArrayRequest& request) {
   return dataset;
 }
 
-Dataset make_builtin(const std::string& name) { return make_builtin(name, {}); }
-
-std::vector<std::pair<std::string, std::string>> builtin_names() {
-  std::vector<std::pair<std::string, std::string>> names;
-  for (const mesh::Builtin& builtin : mesh::builtins())
-    names.emplace_back(builtin.name,
-                       std::string(builtin.description) + " (" + std::to_string(builtin.default_cells) + " cells)");
-  return names;
-}
-
-}  // namespace tetravox
+}  // namespace tetravox::mesh

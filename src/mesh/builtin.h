@@ -1,6 +1,6 @@
 #pragma once
 
-/// What the embedded datasets have in common.
+/// The embedded meshes, and what they have in common.
 
 #include "tetravox/dataset.h"
 
@@ -12,7 +12,24 @@
 
 namespace tetravox::mesh {
 
-/// Memory of an embedded dataset; `MeshData` views it.
+inline constexpr std::uint64_t kFewestCells = 5;
+inline constexpr std::uint64_t kMostCells = 500'000'000;
+
+/// An embedded mesh as people see it.
+struct BuiltinMeshEntry {
+  std::string name;
+  std::string description;
+  std::uint64_t default_cells = 0;
+};
+const std::vector<BuiltinMeshEntry>& builtin_meshes();
+
+/// Makes the mesh with this entry's name and about `cells` cells, in [kFewestCells, kMostCells], with the array that
+/// `request` asks for. Messages and the summary call it `source`.
+/// @throws Error: kInvalidArgument for an array that it has not, kOutOfMemory.
+Dataset make_builtin_mesh(const BuiltinMeshEntry& entry, std::uint64_t cells, const ArrayRequest& request,
+                          const std::string& source);
+
+/// Memory of an embedded mesh; `MeshData` views it.
 struct BuiltinStorage {
   std::vector<double> points;
   std::vector<CellType> cell_types;
@@ -21,7 +38,7 @@ struct BuiltinStorage {
   std::vector<double> scalars;
 };
 
-/// An array that an embedded dataset can be asked for.
+/// An array that an embedded mesh can be asked for.
 struct BuiltinArray {
   const char* name;
   Association association;

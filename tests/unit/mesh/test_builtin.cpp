@@ -7,15 +7,6 @@
 namespace tetravox::test {
 namespace {
 
-void expect_refused(const std::string& name) {
-  try {
-    make_builtin(name);
-    ADD_FAILURE() << name;
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument) << error.what();
-  }
-}
-
 void expect_clean(const PreparedMesh& mesh) {
   EXPECT_EQ(mesh.report.degenerate, 0u);
   EXPECT_EQ(mesh.report.duplicated, 0u);
@@ -25,7 +16,7 @@ void expect_clean(const PreparedMesh& mesh) {
 }
 
 TEST(Builtin, SphereIsABall) {
-  const Dataset dataset = make_builtin("builtin:sphere");
+  const Dataset dataset = make_embedded("sphere");
   const PreparedMesh mesh = prepare_mesh(dataset.mesh);
   EXPECT_EQ(mesh.cells.size(), 2560u);
   expect_clean(mesh);
@@ -39,12 +30,11 @@ TEST(Builtin, SphereIsABall) {
     }
   EXPECT_EQ(mesh.scalar_range.min, 0.0);
   EXPECT_NEAR(mesh.scalar_range.max, 1.0, 1e-12);
-  EXPECT_NEAR(total_volume(prepare_mesh(make_builtin("sphere?cells=200000").mesh)), 4.0 / 3.0 * std::numbers::pi,
-              0.005);
+  EXPECT_NEAR(total_volume(prepare_mesh(make_embedded("sphere", 200000).mesh)), 4.0 / 3.0 * std::numbers::pi, 0.005);
 }
 
 TEST(Builtin, BuckyballHasSixtyAtoms) {
-  const Dataset dataset = make_builtin("buckyball?cells=1500000");
+  const Dataset dataset = make_embedded("buckyball", 1500000);
   const std::size_t row = 64;
   ASSERT_EQ(dataset.mesh.point_count(), row * row * row);
   const auto value = [&](std::size_t i, std::size_t j, std::size_t k) {
@@ -65,7 +55,7 @@ TEST(Builtin, BuckyballHasSixtyAtoms) {
 }
 
 TEST(Builtin, BuckyballIsClean) {
-  const Dataset dataset = make_builtin("buckyball");
+  const Dataset dataset = make_embedded("buckyball");
   const PreparedMesh mesh = prepare_mesh(dataset.mesh);
   EXPECT_EQ(mesh.cells.size(), 178746u);
   expect_clean(mesh);
@@ -74,7 +64,7 @@ TEST(Builtin, BuckyballIsClean) {
 }
 
 TEST(Builtin, DuctIsCleanWithOneHole) {
-  const Dataset dataset = make_builtin("duct");
+  const Dataset dataset = make_embedded("duct");
   EXPECT_GT(dataset.info.cell_count, 20000u);
   EXPECT_LT(dataset.info.cell_count, 60000u);
   const PreparedMesh mesh = prepare_mesh(dataset.mesh);
@@ -85,7 +75,7 @@ TEST(Builtin, DuctIsCleanWithOneHole) {
 }
 
 TEST(Builtin, DuctHasCellData) {
-  const Dataset dataset = make_builtin("duct", {"volume", {}, {}});
+  const Dataset dataset = make_embedded("duct", 0, "volume");
   EXPECT_EQ(dataset.mesh.association, Association::kCell);
   const PreparedMesh mesh = prepare_mesh(dataset.mesh);
   double volume = 0.0;
@@ -94,16 +84,17 @@ TEST(Builtin, DuctHasCellData) {
     volume += v;
   }
   EXPECT_NEAR(volume, total_volume(mesh), 0.01);
-  EXPECT_EQ(make_builtin("duct", {"speed", {}, {}}).mesh.array_name, "speed");
-  EXPECT_THROW(make_builtin("duct", {"temperature", {}, {}}), Error);
+  EXPECT_EQ(make_embedded("duct", 0, "speed").mesh.array_name, "speed");
+  EXPECT_THROW(make_embedded("duct", 0, "temperature"), Error);
 }
 
 TEST(Builtin, InfoIsComplete) {
-  for (const auto& [name, description] : builtin_names()) {
-    const Dataset dataset = make_builtin(name);
+  for (const mesh::BuiltinMeshEntry& entry : mesh::builtin_meshes()) {
+    const Dataset dataset = make_embedded(entry.name);
     const DatasetInfo& info = dataset.info;
-    EXPECT_FALSE(description.empty());
-    EXPECT_EQ(info.source, "builtin:" + name);
+    EXPECT_FALSE(entry.description.empty());
+    EXPECT_EQ(info.source, entry.name);
+    EXPECT_FALSE(dataset.is_grid());
     EXPECT_EQ(info.format, "embedded");
     EXPECT_EQ(info.cell_count, dataset.mesh.cell_count());
     EXPECT_EQ(info.point_count, dataset.mesh.point_count());
@@ -122,22 +113,14 @@ TEST(Builtin, InfoIsComplete) {
 }
 
 TEST(Builtin, SizesAreMet) {
-  for (const auto& [name, description] : builtin_names())
-    for (const double cells : {1e4, 1e5, 1e6}) {
-      const std::string request = name + "?cells=" + std::to_string(static_cast<int>(cells));
-      const double made = static_cast<double>(make_builtin(request).info.cell_count);
-      EXPECT_GT(made, 0.6 * cells) << request;
-      EXPECT_LT(made, 1.6 * cells) << request;
+  for (const mesh::BuiltinMeshEntry& entry : mesh::builtin_meshes()) {
+    for (const std::uint64_t cells : {10'000, 100'000, 1'000'000}) {
+      const auto made = static_cast<double>(make_embedded(entry.name, cells).info.cell_count);
+      EXPECT_GT(made, 0.6 * static_cast<double>(cells)) << entry.name;
+      EXPECT_LT(made, 1.6 * static_cast<double>(cells)) << entry.name;
     }
-  for (const auto& [name, description] : builtin_names()) prepare_mesh(make_builtin(name + "?cells=5").mesh);
-}
-
-TEST(Builtin, WrongNamesAreRefused) {
-  for (const char* name :
-       {"", "builtin:", "builtin:cube", "sphere2", "sphere?", "sphere?cells", "sphere?cells=", "sphere?cells=0",
-        "sphere?cells=-5", "sphere?cells=1e6", "sphere?cells=600000000", "sphere?cells=99999999999999999999",
-        "sphere?size=5", "sphere?cells=10&", "sphere?cells=10&x=1"})
-    expect_refused(name);
+    prepare_mesh(make_embedded(entry.name, mesh::kFewestCells).mesh);
+  }
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ Measured measure(const MeshData& mesh) {
 }
 
 TEST(Memory, BudgetsOfTetrahedra) {
-  const Dataset dataset = make_builtin("buckyball?cells=1000000");
+  const Dataset dataset = make_embedded("buckyball", 1000000);
   const Measured measured = measure(dataset.mesh);
   RecordProperty("peak_bytes_per_tetrahedron", std::to_string(measured.peak + measured.input));
   EXPECT_LE(measured.peak + measured.input, 120.0);
@@ -85,7 +85,7 @@ TEST(Memory, BudgetsOfTetrahedra) {
 
 TEST(Memory, BudgetsOfHexahedraAndCellData) {
   for (const char* array : {"pressure", "volume"}) {
-    const Dataset dataset = make_builtin("duct?cells=150000", {array, {}, {}});
+    const Dataset dataset = make_embedded("duct", 150000, array);
     const Measured measured = measure(dataset.mesh);
     EXPECT_LE(measured.peak + measured.input, 120.0);
     EXPECT_LE(measured.resident, 24.0 + 16.0 * measured.vertices + 16.0 * measured.boundary + 0.1);
@@ -98,7 +98,7 @@ TEST(Memory, EstimateHoldsForEveryKindOfMesh) {
   for (int i = 0; i < 100000; ++i) add_tetrahedron(soup, 2.0 * i);
   measure(soup.view());
   // Cells that share points and hardly a face, as every other cell has no value.
-  Dataset dataset = make_builtin("buckyball?cells=600000");
+  Dataset dataset = make_embedded("buckyball", 600000);
   std::vector<double> values(dataset.mesh.cell_count());
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 2 == 0 ? 1.0 : std::nan("");
   dataset.mesh.association = Association::kCell;

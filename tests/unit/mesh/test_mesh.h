@@ -2,6 +2,7 @@
 
 /// Small meshes to prepare, and a look at what came out: cells as a walking ray would meet them.
 
+#include "src/mesh/builtin.h"
 #include "tetravox/mesh.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -62,6 +64,15 @@ inline Point cross(const Point& a, const Point& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// An embedded mesh of about `cells` cells (0: as many as it has by default), with the array of that name.
+inline Dataset make_embedded(const std::string& name, std::uint64_t cells = 0, const std::string& array = {}) {
+  for (const mesh::BuiltinMeshEntry& entry : mesh::builtin_meshes())
+    if (entry.name == name)
+      return mesh::make_builtin_mesh(entry, cells == 0 ? entry.default_cells : cells, {array, {}, {}}, name);
+  ADD_FAILURE() << name;
+  return {};
+}
 
 using Corners = std::array<std::uint32_t, 4>;
 

@@ -85,10 +85,11 @@ TEST(Prepare, OrderOfPointsAndCellsDoesNotMatterForTetrahedra) {
 }
 
 TEST(Prepare, SameBytesForAnyNumberOfThreads) {
-  for (const char* name : {"buckyball?cells=60000", "duct?cells=12000"})
+  for (const char* name : {"buckyball", "duct"})
     for (const char* array : {"", "volume"}) {
-      if (std::string(name).find("duct") == std::string::npos && *array) continue;
-      const Dataset dataset = make_builtin(name, {array, {}, {}});
+      const bool is_duct = std::string(name) == "duct";
+      if (!is_duct && *array) continue;
+      const Dataset dataset = make_embedded(name, is_duct ? 12000 : 60000, array);
       const PreparedMesh one = prepare_with_threads(dataset.mesh, 1);
       for (const int threads : {2, 3, 8}) {
         const PreparedMesh many = prepare_with_threads(dataset.mesh, threads);
@@ -103,7 +104,7 @@ TEST(Prepare, SameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Prepare, NeighboursInSpaceAreNeighboursInMemory) {
-  const PreparedMesh mesh = prepare_mesh(make_builtin("buckyball").mesh);
+  const PreparedMesh mesh = prepare_mesh(make_embedded("buckyball").mesh);
   std::size_t links = 0, far = 0;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (const std::uint32_t neighbour : mesh.cells[c].neighbours) {
@@ -135,7 +136,7 @@ TEST(Prepare, CellDataIsRepeatedForEachTetrahedron) {
 }
 
 TEST(Prepare, TellsProgressAndStops) {
-  const Dataset dataset = make_builtin("buckyball");
+  const Dataset dataset = make_embedded("buckyball");
   std::vector<double> told;
   std::atomic<bool> cancelled{false};
   Progress progress;
