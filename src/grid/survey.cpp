@@ -2,6 +2,7 @@
 
 #include "src/grid/frame.h"
 #include "src/grid/visit_type.h"
+#include "src/support/threads.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -83,7 +84,8 @@ ValueSurvey survey_magnitudes(const T* values, std::size_t count, std::size_t co
 }
 
 /// One survey for each of `wanted` (components, or `kMagnitude`), in one pass.
-std::vector<ValueSurvey> survey_components(const GridData& grid, const std::vector<int>& wanted) {
+std::vector<ValueSurvey> survey_components(const GridData& grid, const std::vector<int>& wanted,
+                                           const Progress& progress) {
   const auto dimensions = grid.value_dimensions();
   const auto components = static_cast<std::size_t>(grid.components);
   return visit_type(grid.type, [&](auto any) {
@@ -93,6 +95,7 @@ std::vector<ValueSurvey> survey_components(const GridData& grid, const std::vect
         tbb::blocked_range<std::size_t>(0, dimensions[0] * dimensions[1] * dimensions[2], kGrain),
         std::vector<ValueSurvey>(wanted.size(), kNothing),
         [&](const tbb::blocked_range<std::size_t>& part, std::vector<ValueSurvey> surveys) {
+          support::throw_if_cancelled(progress);
           const T* first = values + part.begin() * components;
           for (std::size_t i = 0; i < wanted.size(); ++i)
             add(surveys[i], wanted[i] == kMagnitude ? survey_magnitudes(first, part.size(), components)
@@ -109,9 +112,9 @@ std::vector<ValueSurvey> survey_components(const GridData& grid, const std::vect
 
 }  // namespace
 
-ValueSurvey survey_values(const GridData& grid) { return survey_components(grid, {grid.component}).front(); }
+ValueSurvey survey_values(const GridData& grid) { return survey_components(grid, {grid.component}, {}).front(); }
 
-ArrayInfo describe_values(const GridData& grid) {
+ArrayInfo describe_values(const GridData& grid, const Progress& progress) {
   ArrayInfo info;
   info.name = grid.array_name;
   info.association = grid.association;
@@ -123,7 +126,7 @@ ArrayInfo describe_values(const GridData& grid) {
   const auto range_of = [](const ValueSurvey& survey) {
     return survey.range.min <= survey.range.max ? survey.range : ValueRange{};
   };
-  const std::vector<ValueSurvey> surveys = survey_components(grid, wanted);
+  const std::vector<ValueSurvey> surveys = survey_components(grid, wanted, progress);
   for (int component = 0; component < grid.components; ++component)
     info.component_ranges.push_back(range_of(surveys[static_cast<std::size_t>(component)]));
   info.magnitude_range = range_of(surveys.back());
@@ -131,7 +134,7 @@ ArrayInfo describe_values(const GridData& grid) {
   return info;
 }
 
-void describe_grid(const GridData& grid, DatasetInfo& info) {
+void describe_grid(const GridData& grid, DatasetInfo& info, const Progress& progress) {
   info.grid = grid.shape;
   info.point_count = info.cell_count = 1;
   for (const std::uint32_t points : grid.shape.dimensions) {
@@ -139,7 +142,7 @@ void describe_grid(const GridData& grid, DatasetInfo& info) {
     info.cell_count *= points - 1;
   }
   info.bounds = bounds_of(grid.shape);
-  info.arrays = {describe_values(grid)};
+  info.arrays = {describe_values(grid, progress)};
 }
 
 }  // namespace tetravox::grid

@@ -3,6 +3,7 @@
 /// What is known of a grid and its values without holding them.
 
 #include "tetravox/dataset.h"
+#include "tetravox/progress.h"
 
 #include <cstdint>
 
@@ -19,9 +20,11 @@ ValueSurvey survey_values(const GridData& grid);
 
 /// Of the array that the grid holds: its type, ranges of all components and of the magnitude (0 to 0 where no value is
 /// finite). One parallel pass; the same for any number of threads.
-ArrayInfo describe_values(const GridData& grid);
+/// @throws Error (kCancelled).
+ArrayInfo describe_values(const GridData& grid, const Progress& progress = {});
 
 /// Fills in shape, counts, bounds and the one array of a valid grid.
-void describe_grid(const GridData& grid, DatasetInfo& info);
+/// @throws Error (kCancelled).
+void describe_grid(const GridData& grid, DatasetInfo& info, const Progress& progress = {});
 
 }  // namespace tetravox::grid
