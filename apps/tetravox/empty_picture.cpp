@@ -37,16 +37,11 @@ double largest_extinction(const OpticalFunction& function, const ValueRange& ran
   return largest;
 }
 
-std::string bounds_text(const PreparedMesh& mesh) {
-  return "x " + format_range(mesh.bounds[0]) + ", y " + format_range(mesh.bounds[1]) + ", z " +
-         format_range(mesh.bounds[2]);
-}
-
 std::string explain_transparent(const PictureContext& context) {
   if (context.statistics.rays == 0)
-    return "the picture is empty: the camera does not see the data (" + bounds_text(context.mesh) +
+    return "the picture is empty: the camera does not see the data (" + format_bounds(bounds_of(context.body)) +
            "); leave the camera out for a view of everything";
-  const ValueRange& range = context.mesh.scalar_range;
+  const ValueRange range = scalar_range_of(context.body);
   if (largest_extinction(context.completed.optical_function, range) <= 0.0)
     return "the picture is empty: the transfer function is transparent over the data's range " + format_range(range) +
            "; give --range " + format_number(range.min) + "," + format_number(range.max) +
@@ -68,7 +63,7 @@ std::string other_arrays(const DatasetInfo& info, const std::string& name) {
 
 std::vector<std::string> explain_picture(const Image& image, const PictureContext& context) {
   std::vector<std::string> lines;
-  const ValueRange& range = context.mesh.scalar_range;
+  const ValueRange range = scalar_range_of(context.body);
   if (!(range.min < range.max)) {
     const std::string& name = context.scene.data.array.name;
     const std::string others = other_arrays(context.info, name);

@@ -2,9 +2,10 @@
 
 /// A picture is never blank without a word: why there is nothing to see, and what to do.
 
+#include "apps/tetravox/body.h"
+
 #include "tetravox/dataset.h"
 #include "tetravox/image.h"
-#include "tetravox/mesh.h"
 #include "tetravox/render.h"
 #include "tetravox/scene.h"
 
@@ -17,7 +18,7 @@ namespace tetravox::tool {
 struct PictureContext {
   const Scene& scene;
   const CompletedScene& completed;
-  const PreparedMesh& mesh;
+  const Body& body;
   const DatasetInfo& info;
   const RenderStatistics& statistics;
 };

@@ -21,8 +21,8 @@ constexpr int kLogarithmPieces = 16;
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{64} << 20;  // bytes
 
 /// The range asked for, or the data's. @throws UsageError where it has no logarithm.
-ValueRange range_of(const FunctionOptions& options, const PreparedMesh& mesh) {
-  const ValueRange range = options.range.value_or(mesh.scalar_range);
+ValueRange range_of(const FunctionOptions& options, const Body& body) {
+  const ValueRange range = options.range.value_or(scalar_range_of(body));
   if (options.use_logarithm && !(range.min > 0.0))
     throw UsageError("--log: the range " + format_range(range) +
                      " does not lie above 0: give --range a,b with a above 0");
@@ -50,7 +50,7 @@ std::string read_file(const std::string& path) {
 
 /// A file's function. ParaView's are for the data's range, as there; our own mean the values that they say, unless a
 /// range is given.
-TransferFunction read_function(const FunctionOptions& options, const PreparedMesh& mesh) {
+TransferFunction read_function(const FunctionOptions& options, const Body& body) {
   const std::string text = read_file(options.function);
   const bool is_paraview = text.find("\"RGBPoints\"") != std::string::npos;
   PresetOptions preset;
@@ -58,18 +58,18 @@ TransferFunction read_function(const FunctionOptions& options, const PreparedMes
   if (!is_paraview) {
     TransferFunction function = parse_transfer_function(text, options.function, options.preset_name, preset, false);
     if (!options.range && !options.use_logarithm) return function;
-    return stretch_function(function, range_of(options, mesh), options.use_logarithm);
+    return stretch_function(function, range_of(options, body), options.use_logarithm);
   }
-  preset.range = range_of(options, mesh);
+  preset.range = range_of(options, body);
   preset.logarithmic = options.use_logarithm;
   return parse_transfer_function(text, options.function, options.preset_name, preset, true);
 }
 
-TransferFunction make_named_function(const FunctionOptions& options, const PreparedMesh& mesh) {
+TransferFunction make_named_function(const FunctionOptions& options, const Body& body) {
   if (!options.preset_name.empty())
     throw UsageError("--preset-name: picks from a file, and '" + options.function + "' is a preset: leave it out");
   PresetOptions preset;
-  preset.range = range_of(options, mesh);
+  preset.range = range_of(options, body);
   preset.logarithmic = options.use_logarithm;
   preset.invert = options.invert;
   return make_preset(options.function, preset);
@@ -99,11 +99,11 @@ Histogram collect_bins(const Histogram& fine, const ValueRange& range, bool use_
 }
 
 /// The default function, for other values than all of the data's.
-TransferFunction make_default_function(const FunctionOptions& options, const PreparedMesh& mesh) {
-  const ValueRange range = range_of(options, mesh);
+TransferFunction make_default_function(const FunctionOptions& options, const Body& body) {
+  const ValueRange range = range_of(options, body);
   if (!options.range && !options.use_logarithm)
-    return make_default_transfer_function(make_histogram(mesh, kBins), options.invert);
-  const Histogram fine = make_histogram(mesh, kFineBins);
+    return make_default_transfer_function(make_histogram(body, kBins), options.invert);
+  const Histogram fine = make_histogram(body, kFineBins);
   if (!(range.min < range.max))
     return make_default_transfer_function({range, {1.0}, fine.unit_distance}, options.invert);
   Histogram histogram = collect_bins(fine, range, options.use_logarithm);
@@ -145,14 +145,14 @@ TransferFunction stretch_function(const TransferFunction& function, const ValueR
   return result;
 }
 
-void choose_function(const FunctionOptions& options, const PreparedMesh& mesh, Scene& scene) {
+void choose_function(const FunctionOptions& options, const Body& body, Scene& scene) {
   if (!options.preset_name.empty() && options.function.empty())
     throw UsageError("--preset-name: needs a --transfer-function file to pick from");
   if (!options.function.empty()) {
     scene.transfer_function =
-        is_file(options.function) ? read_function(options, mesh) : make_named_function(options, mesh);
+        is_file(options.function) ? read_function(options, body) : make_named_function(options, body);
   } else if (options.changes_values() && !scene.transfer_function) {
-    scene.transfer_function = make_default_function(options, mesh);
+    scene.transfer_function = make_default_function(options, body);
   } else if (options.changes_values()) {
     PresetOptions preset;
     preset.invert = true;
@@ -160,10 +160,10 @@ void choose_function(const FunctionOptions& options, const PreparedMesh& mesh, S
       scene.transfer_function = parse_transfer_function(format_scene(scene), "the scene", "", preset, false);
     if (options.range || options.use_logarithm)
       scene.transfer_function =
-          stretch_function(*scene.transfer_function, range_of(options, mesh), options.use_logarithm);
+          stretch_function(*scene.transfer_function, range_of(options, body), options.use_logarithm);
   }
   if (!options.unit_distance) return;
-  if (!scene.transfer_function) scene.transfer_function = complete_scene(scene, mesh).transfer_function;
+  if (!scene.transfer_function) scene.transfer_function = complete_scene(scene, body).transfer_function;
   if (scene.transfer_function->absorption == Absorption::kExtinction)
     throw UsageError("--unit-distance: this transfer function gives extinctions, which need none: leave it out");
   scene.transfer_function->unit_distance = options.unit_distance;

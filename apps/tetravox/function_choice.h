@@ -2,16 +2,16 @@
 
 /// Which transfer function is drawn: the command line's, the scene's, or one made from the data.
 
+#include "apps/tetravox/body.h"
 #include "apps/tetravox/options.h"
 
-#include "tetravox/mesh.h"
 #include "tetravox/scene.h"
 
 namespace tetravox::tool {
 
 /// Puts the transfer function that the options ask for into `scene`; leaves it as it is where they ask for nothing.
 /// @throws Error or UsageError that names the option.
-void choose_function(const FunctionOptions& options, const PreparedMesh& mesh, Scene& scene);
+void choose_function(const FunctionOptions& options, const Body& body, Scene& scene);
 
 /// The function with its values stretched from its own ends to those of `range`, evenly in the value or, along a
 /// logarithm, in the value's logarithm (then cut into 16 linear pieces between points).

@@ -8,6 +8,7 @@
 #include "tetravox/error.h"
 #include "tetravox/io.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
@@ -72,10 +73,38 @@ std::string array_text(const ArrayInfo& array, bool is_default) {
   return text;
 }
 
-std::string memory_text(const MemoryPlan& plan) {
-  return "prepare " + format_bytes(plan.prepare) + ", then mesh " + format_bytes(plan.resident) + " + draw " +
-         format_bytes(plan.render) + " (" + std::to_string(plan.width) + " x " + std::to_string(plan.height) + "); " +
-         format_bytes(plan.available) + " are free";
+/// "1, 1, 2.5".
+template <class Numbers>
+std::string list_text(const Numbers& numbers) {
+  std::string text;
+  for (const auto number : numbers) text += (text.empty() ? "" : ", ") + format_number(static_cast<double>(number), 9);
+  return text;
+}
+
+/// Rows for the lattice of a grid.
+std::string grid_text(const GridShape& shape) {
+  std::string dimensions, spacing;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string separator = axis == 0 ? "" : ", ";
+    dimensions += (axis == 0 ? "" : " x ") + std::to_string(shape.dimensions[axis]);
+    const std::vector<double>& places = shape.coordinates[axis];
+    spacing += separator + (places.empty() ? format_number(shape.spacing[axis], 9)
+                                           : "uneven " + format_range({places.front(), places.back()}));
+  }
+  std::string text = row("grid", dimensions + " points") + row("spacing", spacing);
+  text += row("origin", list_text(shape.origin));
+  if (shape.direction != GridShape{}.direction) text += row("direction", list_text(shape.direction));
+  if (std::count(shape.dimensions.begin(), shape.dimensions.end(), 1u) > 0)
+    text += row("", "a single slice: there is no volume to draw");
+  return text;
+}
+
+std::string memory_text(const MemoryPlan& plan, bool is_grid) {
+  const std::string end = format_bytes(plan.render) + " (" + std::to_string(plan.width) + " x " +
+                          std::to_string(plan.height) + "); " + format_bytes(plan.available) + " are free";
+  if (is_grid)
+    return "values " + format_bytes(plan.values) + " + summaries " + format_bytes(plan.resident) + " + draw " + end;
+  return "prepare " + format_bytes(plan.prepare) + ", then mesh " + format_bytes(plan.resident) + " + draw " + end;
 }
 
 std::string format_info(const DatasetInfo& info, std::optional<std::size_t> default_array,
@@ -83,20 +112,20 @@ std::string format_info(const DatasetInfo& info, std::optional<std::size_t> defa
   std::string text = info.source + ": " + info.format + "\n";
   text += row("cells", cells_text(info));
   text += row("points", format_count(info.point_count));
-  text += row("bounds", "x " + format_range(info.bounds[0]) + ", y " + format_range(info.bounds[1]) + ", z " +
-                            format_range(info.bounds[2]));
+  if (info.grid) text += grid_text(*info.grid);
+  text += row("bounds", format_bounds(info.bounds));
   if (!info.times.empty()) text += row("times", times_text(info));
   if (const std::string left_out = left_out_text(info.left_out); !left_out.empty()) text += row("left out", left_out);
   for (std::size_t i = 0; i < info.arrays.size(); ++i)
     text += row(i == 0 ? "arrays" : "", array_text(info.arrays[i], default_array == i));
   if (info.arrays.empty()) text += row("arrays", "none: there is nothing to draw");
   if (default_array) text += row("", "(* is drawn by default)");
-  if (memory) text += row("memory", memory_text(*memory));
+  if (memory) text += row("memory", memory_text(*memory, info.grid.has_value()));
   for (const std::string& note : info.notes) text += row("note", single_line(note));
   return text;
 }
 
-/// The mesh with its data, for a close estimate; without it where there is no array to draw.
+/// The dataset with its values, for a close estimate; without it where there is no array to draw.
 Dataset read_summary(const SceneInput& input, const Progress& progress) {
   try {
     return read_dataset(input.data_path, input.read, progress);
@@ -120,7 +149,8 @@ void run_info(const InfoOptions& options) {
   std::optional<std::size_t> default_array;
   if (!dataset.info.arrays.empty() && dataset.info.cell_count > 0) default_array = choose_array(dataset.info, {});
   std::optional<MemoryPlan> memory;
-  if (dataset.mesh.cell_count() > 0) memory = plan_memory(dataset.mesh, input.scene.settings);
+  if (dataset.mesh.cell_count() > 0 || !dataset.grid.values.empty())
+    memory = plan_memory(dataset, input.scene.settings);
   std::cout << (options.use_json ? format_info_json(dataset.info, default_array, memory)
                                  : format_info(dataset.info, default_array, memory));
 }

@@ -39,6 +39,38 @@ Json array_json(const ArrayInfo& array) {
   return json;
 }
 
+Json prepare_json(const PrepareReport& report) {
+  return {{"input_cells", report.input_cells},
+          {"tetrahedra", report.tetrahedra},
+          {"merged_points", report.merged_points},
+          {"degenerate", report.degenerate},
+          {"missing_value_cells", report.missing_value_cells},
+          {"duplicated", report.duplicated},
+          {"overlapping_faces", report.overlapping_faces},
+          {"boundary_faces", report.boundary_faces}};
+}
+
+Json prepare_json(const GridStatistics& grid) {
+  return {
+      {"values", grid.values}, {"type", grid.type}, {"missing_values", grid.missing_values}, {"bricks", grid.bricks}};
+}
+
+/// "i", "j", "k" of the axes whose points are not evenly spaced.
+Json uneven_axes(const GridShape& shape) {
+  Json axes = Json::array();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (!shape.coordinates[axis].empty()) axes.push_back(std::string(1, "ijk"[axis]));
+  return axes;
+}
+
+Json grid_json(const GridShape& shape) {
+  return {{"dimensions", shape.dimensions},
+          {"origin", shape.origin},
+          {"spacing", shape.spacing},
+          {"direction", shape.direction},
+          {"uneven_axes", uneven_axes(shape)}};
+}
+
 }  // namespace
 
 double median_frame_seconds(const PictureStatistics& statistics) {
@@ -67,26 +99,27 @@ std::string format_statistics(const PictureStatistics& statistics) {
   json["stopped_rays"] = statistics.render.stopped_rays;
   Json& bytes = json["bytes"];
   bytes["input"] = statistics.input_bytes;
-  bytes["mesh"] = statistics.mesh_bytes;
+  const std::optional<GridStatistics>& grid = statistics.body.grid;
+  if (grid) {
+    bytes["grid"] = grid->value_bytes + statistics.body.bytes;
+    bytes["summaries"] = statistics.body.bytes;
+  } else {
+    bytes["mesh"] = statistics.body.bytes;
+  }
   bytes["frame"] = statistics.frame_bytes;
   bytes["peak_rss"] = peak_resident_memory(RUSAGE_SELF);
   bytes["reader_peak_rss"] = peak_resident_memory(RUSAGE_CHILDREN);
   json["threads"] = statistics.render.threads;
   json["isa"] = statistics.render.instruction_set;
   json["backend"] = "cpu";
-  json["source"] = name_of(statistics.settings.source);
+  json["kind"] = grid ? "grid" : "mesh";
+  if (grid) json["dimensions"] = grid->dimensions;
+  json["source"] = name_of(statistics.settings.source.value_or(grid ? Source::kMarch : Source::kWalk));
   json["integrator"] = name_of(statistics.settings.integrator);
+  if (grid) json["filter"] = name_of(statistics.settings.filter);
   json["resolution"] = {statistics.settings.width, statistics.settings.height};
   json["array"] = statistics.array;
-  Json& prepare = json["prepare"];
-  prepare["input_cells"] = statistics.prepare.input_cells;
-  prepare["tetrahedra"] = statistics.prepare.tetrahedra;
-  prepare["merged_points"] = statistics.prepare.merged_points;
-  prepare["degenerate"] = statistics.prepare.degenerate;
-  prepare["missing_value_cells"] = statistics.prepare.missing_value_cells;
-  prepare["duplicated"] = statistics.prepare.duplicated;
-  prepare["overlapping_faces"] = statistics.prepare.overlapping_faces;
-  prepare["boundary_faces"] = statistics.prepare.boundary_faces;
+  json["prepare"] = grid ? prepare_json(*grid) : prepare_json(statistics.body.mesh);
   json["version"] = TETRAVOX_VERSION;
   return dump(json);
 }
@@ -96,6 +129,8 @@ std::string format_info_json(const DatasetInfo& info, std::optional<std::size_t>
   Json json;
   json["source"] = info.source;
   json["format"] = info.format;
+  json["kind"] = info.grid ? "grid" : "mesh";
+  if (info.grid) json["grid"] = grid_json(*info.grid);
   json["points"] = info.point_count;
   json["cells"] = info.cell_count;
   json["blocks"] = info.block_count;
@@ -112,11 +147,14 @@ std::string format_info_json(const DatasetInfo& info, std::optional<std::size_t>
   json["arrays"] = Json::array();
   for (const ArrayInfo& array : info.arrays) json["arrays"].push_back(array_json(array));
   json["default_array"] = default_array ? Json(info.arrays[*default_array].name) : Json();
-  if (memory)
-    json["bytes"] = {{"prepare_peak", memory->prepare},
-                     {"mesh", memory->resident},
-                     {"render", memory->render},
-                     {"available", memory->available}};
+  if (memory) {
+    Json& bytes = json["bytes"];
+    if (info.grid) bytes["values"] = memory->values;
+    bytes["prepare_peak"] = memory->prepare;
+    bytes[info.grid ? "summaries" : "mesh"] = memory->resident;
+    bytes["render"] = memory->render;
+    bytes["available"] = memory->available;
+  }
   json["notes"] = info.notes;
   return dump(json);
 }

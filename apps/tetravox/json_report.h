@@ -6,12 +6,30 @@
 #include "tetravox/mesh.h"
 #include "tetravox/render.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace tetravox::tool {
+
+/// What preparing a grid met.
+struct GridStatistics {
+  std::array<std::uint32_t, 3> dimensions{};
+  std::string type;          ///< of the values
+  std::uint64_t values = 0;  ///< tuples
+  std::uint64_t missing_values = 0;
+  std::uint64_t bricks = 0;
+  std::uint64_t value_bytes = 0;  ///< of the values, which stay as they were read
+};
+
+/// What preparing made of a mesh or a grid.
+struct BodyStatistics {
+  std::uint64_t bytes = 0;             ///< the prepared mesh, or the summaries of a grid's bricks
+  PrepareReport mesh;                  ///< of a mesh
+  std::optional<GridStatistics> grid;  ///< set for grids
+};
 
 /// What `--statistics` writes.
 struct PictureStatistics {
@@ -20,9 +38,8 @@ struct PictureStatistics {
   double transfer_function_seconds = 0;  ///< from the function to tables, at each change
   std::vector<double> frame_seconds;     ///< of each frame drawn, at least one
   RenderStatistics render;               ///< of the last frame
-  PrepareReport prepare;
-  std::uint64_t input_bytes = 0;  ///< points, cells and scalars as read
-  std::uint64_t mesh_bytes = 0;   ///< the prepared mesh
+  BodyStatistics body;
+  std::uint64_t input_bytes = 0;  ///< points, cells and scalars, or values, as read
   std::uint64_t frame_bytes = 0;  ///< camera frame and tables
   RenderSettings settings;
   std::string array;
@@ -36,7 +53,8 @@ std::string format_statistics(const PictureStatistics& statistics);
 /// Memory that rendering needs, for `info`.
 struct MemoryPlan {
   std::uint64_t prepare = 0;    ///< at the peak of preparing, beside what was read
-  std::uint64_t resident = 0;   ///< the prepared mesh
+  std::uint64_t values = 0;     ///< of a grid, as read; they stay
+  std::uint64_t resident = 0;   ///< the prepared mesh, or the summaries of a grid
   std::uint64_t render = 0;     ///< camera frame, tables and picture at `width` x `height`
   std::uint64_t available = 0;  ///< that may still be allocated
   int width = 0, height = 0;

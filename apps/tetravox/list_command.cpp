@@ -1,6 +1,8 @@
 #include "apps/tetravox/commands.h"
+#include "apps/tetravox/method_choice.h"
 #include "apps/tetravox/text.h"
 
+#include "tetravox/grid.h"
 #include "tetravox/io.h"
 #include "tetravox/render.h"
 #include "tetravox/transfer_function.h"
@@ -42,12 +44,15 @@ void run_list(const ListOptions& options) {
                 << with_title("Pictures that can be written:", image_writer_names());
       break;
     case ListOptions::Topic::kBuiltins:
-      std::cout << with_title("Embedded datasets; each takes a size, as in builtin:duct?cells=1000000:",
-                              builtin_rows());
+      std::cout << with_title(
+          "Embedded datasets; each takes a size, as in builtin:duct?cells=1000000 or builtin:hydrogen?size=64:",
+          builtin_rows());
       break;
     case ListOptions::Topic::kMethods:
       std::cout << with_title("Sources (--source):", source_names())
+                << with_title("Classifications (--classification):", classification_names())
                 << with_title("Integrators (--integrator):", integrator_names())
+                << with_title("Filters of grids (--filter):", filter_names())
                 << with_title("Instruction sets (--instruction-set):", instruction_set_rows());
       break;
   }

@@ -11,6 +11,8 @@
 namespace tetravox::tool {
 namespace {
 
+constexpr double kLargestDimension = 0xFFFFFFFE;
+
 [[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& wanted) {
   throw UsageError(option + ": '" + text + "' is not " + wanted);
 }
@@ -117,6 +119,25 @@ int parse_component(const std::string& option, const std::string& text) {
   const auto index = parse_whole<int>(text);
   if (!index || *index < 0) refuse(option, text, "a component: 0, 1, 2, ... or 'magnitude'");
   return *index;
+}
+
+std::array<std::uint32_t, 3> parse_dimensions(const std::string& option, const std::string& text) {
+  const auto values = parse_list(text, 3);
+  std::array<std::uint32_t, 3> dimensions{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double value = values ? (*values)[axis] : 0.0;
+    if (!(value >= 1.0 && value <= kLargestDimension) || value != std::floor(value))
+      refuse(option, text, "three whole numbers 'x,y,z' of points, each from 1");
+    dimensions[axis] = static_cast<std::uint32_t>(value);
+  }
+  return dimensions;
+}
+
+std::array<double, 3> parse_spacing(const std::string& option, const std::string& text) {
+  const auto values = parse_list(text, 3);
+  if (!values || std::any_of(values->begin(), values->end(), [](double v) { return !(v > 0.0); }))
+    refuse(option, text, "three numbers 'x,y,z' above 0");
+  return {(*values)[0], (*values)[1], (*values)[2]};
 }
 
 std::size_t parse_choice(const std::string& option, const std::string& text, const std::vector<std::string>& names) {

@@ -38,6 +38,10 @@ std::array<int, 2> parse_resolution(const std::string& option, const std::string
 TimeRequest parse_time(const std::string& option, const std::string& text);
 /// 0, 1, 2, ... or "magnitude".
 int parse_component(const std::string& option, const std::string& text);
+/// "X,Y,Z", whole numbers above 0.
+std::array<std::uint32_t, 3> parse_dimensions(const std::string& option, const std::string& text);
+/// "X,Y,Z", numbers above 0.
+std::array<double, 3> parse_spacing(const std::string& option, const std::string& text);
 /// One of `names`: its index.
 std::size_t parse_choice(const std::string& option, const std::string& text, const std::vector<std::string>& names);
 

@@ -1,5 +1,6 @@
 #include "apps/tetravox/options.h"
 
+#include "apps/tetravox/method_choice.h"
 #include "apps/tetravox/text.h"
 
 #include "tetravox/error.h"
@@ -19,11 +20,17 @@ constexpr int kLargestThreadCount = 4096;
 constexpr int kLargestRepeat = 1'000'000;
 constexpr int kLargestSampleCount = 4096;
 
-constexpr char kIntroduction[] = "tetravox draws scalar fields on meshes of cells, exactly, without a GPU.";
+constexpr int kLargestComponentCount = 4;
+constexpr double kHighestRate = 64.0;  // samples per voxel
+constexpr std::int64_t kLargestHeader = std::int64_t{1} << 53;
+
+constexpr char kIntroduction[] =
+    "tetravox draws scalar fields on meshes of cells and on regular grids, exactly, without a GPU.";
 
 constexpr char kExamples[] = R"(Examples:
   tetravox render engine.vtu                        a good picture of any file: engine.png
   tetravox render builtin:buckyball -o ball.png     an embedded dataset
+  tetravox render head.nii.gz                       a regular grid, as easily
   tetravox render engine.vtu -o engine.exr --array pressure --transfer-function viridis:ramp --range -0.5,1
   tetravox render scene.json --resolution 1920,1080 the scene in a file, larger
   tetravox render engine.png -o again.png           the scene that a picture holds
@@ -36,12 +43,15 @@ constexpr char kRenderExamples[] = R"(Examples:
   tetravox render engine.vtu -o engine.png --array velocity --component magnitude
   tetravox render engine.vtu --transfer-function coolwarm:peaks=5 --range -0.5,1 --camera-azimuth 90
   tetravox render run.pvd --time 3                  the fourth time step; --time 3.0: the step nearest to time 3
+  tetravox render foot_256x256x256_uint8.raw        RAW by its name; any other: --dimensions 256,256,256 --scalar-type uint8
+  tetravox render head.nii.gz --classification post --samples-per-voxel 2 --filter catmull-rom
   tetravox render grid.xyz --solution-file flow.q   PLOT3D
   tetravox render engine.vtu --save-scene engine.json, then: tetravox render engine.json --resolution 4096,4096
 )";
 
 constexpr char kInputHelp[] =
-    "Mesh file, builtin:NAME, scene (.json), picture with a scene (.png, .exr), or a case's directory";
+    "Mesh or grid file, builtin:NAME, scene (.json), picture with a scene (.png, .exr), or a directory (a case, DICOM "
+    "or TIFF slices)";
 
 using Setter = std::function<void(const std::string& option, const std::string& text)>;
 
@@ -110,6 +120,24 @@ void add_input(CLI::App& app, InputOptions& input) {
       store(input.reader_timeout, parse_positive_number));
 }
 
+/// How to understand the bytes of a RAW file.
+void add_raw_layout(CLI::App& app, InputOptions& input) {
+  app.option_defaults()->group("RAW files (what is left out is taken from a name such as foot_256x256x256_uint8.raw)");
+  RawLayout& raw = input.raw;
+  add(app, "--dimensions", "X,Y,Z", "Values along each axis", store(raw.dimensions, parse_dimensions));
+  add(app, "--scalar-type", "TYPE", "int8, uint8, int16, ..., float32, float64",
+      store(raw.type, named(scalar_type_from_name)));
+  add(app, "--components", "N", "Interleaved components of a value, 1 to 4 (default: 1)",
+      store(raw.components, integer(1, kLargestComponentCount)));
+  add(app, "--spacing", "X,Y,Z", "Distance between values (default: 1,1,1)", store(raw.spacing, parse_spacing));
+  app.add_flag_callback(
+      "--big-endian", [&raw] { raw.is_big_endian = true; }, "Most significant byte first");
+  add(app, "--header-bytes", "N", "Bytes to leave out at the beginning (default: 0)",
+      [&input](const std::string& option, const std::string& text) {
+        input.header_bytes = static_cast<std::uint64_t>(parse_integer(option, text, 0, kLargestHeader));
+      });
+}
+
 void add_function(CLI::App& app, FunctionOptions& function) {
   app.option_defaults()->group("Transfer function");
   add(app, "--transfer-function", "FILE|PRESET", "Scene or ParaView JSON file, or a preset (tetravox list presets)",
@@ -169,9 +197,20 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.source, named(source_from_name)));
   add(app, "--integrator", "NAME", "What turns a segment into colour (tetravox list methods)",
       store(method.integrator, named(integrator_from_name)));
+  add(app, "--classification", "NAME", "Where the function is applied: preintegrated (default), post, pre",
+      store(method.classification, parse_classification));
+  add(app, "--filter", "NAME", "How a grid's field is reconstructed (tetravox list methods; default: linear)",
+      store(method.filter, named(filter_from_name)));
+  add(app, "--samples-per-voxel", "N", "Grids: fixed rate along rays, up to 64 (default: as the tolerance asks)",
+      [&method](const std::string& option, const std::string& text) {
+        method.samples_per_voxel = parse_positive_number(option, text);
+        if (*method.samples_per_voxel > kHighestRate)
+          throw UsageError(option + ": '" + text + "' is not a number above 0, at most 64");
+      });
   add(app, "--samples", "N", "Samples a segment of the integrator post",
       store(method.samples, integer(1, kLargestSampleCount)));
-  add(app, "--tolerance", "ERROR", "Error in colour that the picture may have, in [1e-7, 1] (default: 0.002, half an 8-bit step)",
+  add(app, "--tolerance", "ERROR",
+      "Error in colour that the picture may have, 1e-7 to 1 (default: 0.002, half an 8-bit step)",
       [&method](const std::string& option, const std::string& text) {
         method.tolerance = parse_positive_number(option, text);
         if (*method.tolerance < kSmallestTolerance || *method.tolerance > 1.0)
@@ -242,8 +281,9 @@ Parser::Parser() {
   formatter->column_width(40);
   app.formatter(formatter);
 
-  render = add_command(app, "render", "Draw a picture of a mesh, a scene or a picture's scene");
+  render = add_command(app, "render", "Draw a picture of a mesh, a grid, a scene or a picture's scene");
   add_input(*render, render_options.input);
+  add_raw_layout(*render, render_options.input);
   add_function(*render, render_options.function);
   add_camera(*render, render_options.camera);
   add_picture(*render, render_options);
@@ -252,6 +292,8 @@ Parser::Parser() {
 
   info = add_command(app, "info", "Tell what a file holds and what drawing it needs");
   add_input(*info, info_options.input);
+  add_raw_layout(*info, info_options.input);
+  app.option_defaults()->group("OPTIONS");
   info->add_flag("--json", info_options.use_json, "Print JSON");
 
   list = add_command(app, "list", "List presets, readers, builtins or methods");
@@ -295,6 +337,7 @@ CommandLine Parser::result() {
     require_input(render_options.input);
     if (render_options.camera.view_angle && render_options.camera.parallel_scale)
       throw UsageError("give --camera-view-angle (perspective) or --camera-parallel-scale (orthographic), not both");
+    require_consistent(render_options.method);
     if (render_options.is_quiet && render_options.is_verbose) throw UsageError("give --quiet or --verbose, not both");
     return render_options;
   }

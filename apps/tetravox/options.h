@@ -7,6 +7,7 @@
 #include "tetravox/scene.h"
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -23,6 +24,8 @@ struct InputOptions {
   std::string grid_file;        ///< PLOT3D: the grid, where `input` is the solution
   std::string solution_file;    ///< PLOT3D: the solution, where `input` is the grid
   double reader_timeout = 600;  ///< seconds
+  RawLayout raw;                ///< RAW files; without its header
+  std::optional<std::uint64_t> header_bytes;
 };
 
 struct FunctionOptions {
@@ -42,10 +45,20 @@ struct CameraOptions {
   double azimuth = 0, elevation = 0, zoom = 1;
 };
 
+/// Where the transfer function is applied.
+enum class Classification {
+  kPreintegrated,  ///< integrated along segments
+  kPost,           ///< at samples of the field
+  kPre             ///< at the values, before they are interpolated
+};
+
 struct MethodOptions {
   std::optional<Source> source;
+  std::optional<Classification> classification;
   std::optional<Integrator> integrator;
+  std::optional<Filter> filter;
   std::optional<int> samples;
+  std::optional<double> samples_per_voxel;
   std::optional<double> tolerance;
   std::optional<bool> use_early_ray_termination;
   int threads = 0;

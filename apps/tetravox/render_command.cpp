@@ -1,8 +1,11 @@
+#include "apps/tetravox/body.h"
 #include "apps/tetravox/commands.h"
 #include "apps/tetravox/empty_picture.h"
 #include "apps/tetravox/function_choice.h"
 #include "apps/tetravox/json_report.h"
 #include "apps/tetravox/memory_plan.h"
+#include "apps/tetravox/method_choice.h"
+#include "apps/tetravox/output_files.h"
 #include "apps/tetravox/progress_line.h"
 #include "apps/tetravox/scene_input.h"
 #include "apps/tetravox/text.h"
@@ -59,19 +62,10 @@ struct Job {
   std::string output;
   WriteOptions write;
   DatasetInfo info;
-  PreparedMesh mesh;
+  Body body;
   CompletedScene completed;
   PictureStatistics statistics;
 };
-
-/// @throws Error (kCannotWrite) before any long work where the directory of an output is missing.
-void require_directory(const std::string& path) {
-  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  std::error_code ignored;
-  if (!parent.empty() && !std::filesystem::is_directory(parent, ignored))
-    throw Error(ErrorCode::kCannotWrite, "cannot write '" + path + "': there is no directory '" + parent.string() +
-                                             "'; make the directory first");
-}
 
 /// Name of the picture, and that it can be written as asked, before any long work.
 std::string choose_output(const RenderOptions& options, const SceneInput& input) {
@@ -87,7 +81,7 @@ std::string choose_output(const RenderOptions& options, const SceneInput& input)
   const std::array<std::string, 3> written{output, options.save_scene, options.statistics};
   for (std::size_t i = 0; i < written.size(); ++i) {
     if (written[i].empty()) continue;
-    require_directory(written[i]);
+    require_writable(written[i]);
     const bool is_input = i > 0 && std::filesystem::equivalent(written[i], options.input.input, ignored);
     const bool is_twice = std::count(written.begin(), written.end(), written[i]) > 1;
     if (is_input || is_twice)
@@ -105,14 +99,7 @@ void override_scene(const RenderOptions& options, Scene& scene) {
     settings.height = (*options.resolution)[1];
   }
   scene.background = options.background.value_or(scene.background);
-  const MethodOptions& method = options.method;
-  if (method.source) settings.source = method.source;
-  settings.integrator = method.integrator.value_or(settings.integrator);
-  settings.samples = method.samples.value_or(settings.samples);
-  settings.tolerance = method.tolerance.value_or(settings.tolerance);
-  settings.use_early_ray_termination = method.use_early_ray_termination.value_or(settings.use_early_ray_termination);
-  settings.threads = method.threads;
-  settings.instruction_set = method.instruction_set;
+  override_method(options.method, settings);
 }
 
 Camera override_camera(const CameraOptions& options, Camera camera) {
@@ -134,35 +121,39 @@ Camera override_camera(const CameraOptions& options, Camera camera) {
 
 /// What was chosen from the data, written down so that the same picture can be drawn again.
 void record_data(const Dataset& dataset, SceneData& data) {
-  data.array.name = dataset.mesh.array_name;
-  data.array.association = dataset.mesh.association;
+  const ReadArray read = array_of(dataset);
+  data.array.name = read.name;
+  data.array.association = read.association;
   data.array.component.reset();
   for (const ArrayInfo& array : dataset.info.arrays)
-    if (array.name == data.array.name && array.association == dataset.mesh.association && array.components > 1)
-      data.array.component = dataset.mesh.component;
+    if (array.name == read.name && array.association == read.association && array.components > 1)
+      data.array.component = read.component;
   if (!data.time.index && !data.time.value && dataset.info.times.size() > 1) data.time.index = dataset.info.time_index;
 }
 
-/// Reads and prepares; the data as read is gone afterwards.
-void load_mesh(Job& job, Talk& talk) {
+/// Reads and prepares; a mesh as read is gone afterwards, a grid's values stay.
+void load_body(const RenderOptions& options, Job& job, Talk& talk) {
   Stopwatch watch;
   Dataset dataset = read_dataset(job.input.data_path, job.input.read, talk.line.progress());
   throw_if_interrupted();
-  job.statistics.read_seconds = watch.lap();
-  talk.detail("read " + format_count(dataset.info.cell_count) + " cells in " +
-              format_seconds(job.statistics.read_seconds));
-  require_memory(plan_memory(dataset.mesh, job.input.scene.settings), job.input.data_path);
-  job.statistics.input_bytes = input_bytes(dataset.mesh);
+  PictureStatistics& statistics = job.statistics;
+  statistics.read_seconds = watch.lap();
+  talk.detail("read " + format_count(dataset.info.cell_count) + " cells in " + format_seconds(statistics.read_seconds));
+  const RenderSettings& settings = job.input.scene.settings;
+  for (const std::string& line : check_method(options.method, settings, dataset.is_grid(), job.input.data_path))
+    talk.warn("warning: " + line);
+  require_memory(plan_memory(dataset, settings), job.input.data_path);
+  statistics.input_bytes = input_bytes(dataset);
 
-  job.mesh = prepare_mesh(dataset.mesh, talk.line.progress());
+  watch.lap();
+  job.body = prepare_body(dataset, talk.line.progress());
   throw_if_interrupted();
-  job.statistics.prepare_seconds = watch.lap();
-  job.statistics.prepare = job.mesh.report;
-  job.statistics.mesh_bytes = prepared_bytes(job.mesh);
-  talk.detail("prepared " + format_count(job.mesh.cells.size()) + " tetrahedra in " +
-              format_seconds(job.statistics.prepare_seconds) + ", " + format_bytes(job.statistics.mesh_bytes));
+  statistics.prepare_seconds = watch.lap();
+  statistics.body = measure_body(job.body);
+  talk.detail(describe_preparing(statistics.body) + " in " + format_seconds(statistics.prepare_seconds) + ", " +
+              format_bytes(statistics.body.bytes));
   record_data(dataset, job.input.scene.data);
-  job.statistics.array = dataset.mesh.array_name;
+  statistics.array = array_of(dataset).name;
   job.info = std::move(dataset.info);
 }
 
@@ -170,8 +161,8 @@ void load_mesh(Job& job, Talk& talk) {
 void complete_job(const RenderOptions& options, Job& job) {
   Stopwatch watch;
   Scene& scene = job.input.scene;
-  choose_function(options.function, job.mesh, scene);
-  job.completed = complete_scene(scene, job.mesh);
+  choose_function(options.function, job.body, scene);
+  job.completed = complete_scene(scene, job.body);
   job.completed.camera = override_camera(options.camera, job.completed.camera);
   scene.transfer_function = job.completed.transfer_function;
   scene.camera = job.completed.camera;
@@ -179,7 +170,7 @@ void complete_job(const RenderOptions& options, Job& job) {
 }
 
 Image draw(const RenderOptions& options, Job& job, Talk& talk) {
-  Renderer renderer(job.mesh);
+  Renderer renderer = make_renderer(job.body);
   Stopwatch watch;
   renderer.set_transfer_function(job.completed.optical_function);
   job.statistics.transfer_function_seconds = watch.lap();
@@ -228,16 +219,23 @@ std::string describe_array(const Job& job) {
   if (array.component)
     text += *array.component == kMagnitude ? " magnitude" : " component " + std::to_string(*array.component);
   text += array.association == Association::kCell ? " (cell) " : " (point) ";
-  return text + format_range(job.mesh.scalar_range);
+  return text + format_range(scalar_range_of(job.body));
 }
 
 void write_everything(const RenderOptions& options, Job& job, const Image& image, Talk& talk, Stopwatch& watch) {
   Stopwatch write_watch;
-  write_image(job.output, image, choose_write_options(options, job), talk.line.progress());
+  OutputFiles files;
+  files.write(job.output, [&](const std::string& path) {
+    write_image(path, image, choose_write_options(options, job), talk.line.progress());
+  });
   job.statistics.write_seconds = write_watch.lap();
-  if (!options.save_scene.empty()) write_text_file(options.save_scene, scene_text(job, options.save_scene));
+  if (!options.save_scene.empty())
+    files.write(options.save_scene, [&](const std::string& path) { write_text_file(path, scene_text(job, path)); });
   job.statistics.total_seconds = watch.total();
-  if (!options.statistics.empty()) write_text_file(options.statistics, format_statistics(job.statistics));
+  if (!options.statistics.empty())
+    files.write(options.statistics,
+                [&](const std::string& path) { write_text_file(path, format_statistics(job.statistics)); });
+  files.keep();
 }
 
 }  // namespace
@@ -249,13 +247,13 @@ void run_render(const RenderOptions& options) {
   job.input = load_scene_input(options.input);
   job.output = choose_output(options, job.input);
   override_scene(options, job.input.scene);
-  load_mesh(job, talk);
+  load_body(options, job, talk);
   complete_job(options, job);
   const Image image = draw(options, job, talk);
   throw_if_interrupted();
 
   for (const std::string& note : job.info.notes) talk.detail(note);
-  const PictureContext context{job.input.scene, job.completed, job.mesh, job.info, job.statistics.render};
+  const PictureContext context{job.input.scene, job.completed, job.body, job.info, job.statistics.render};
   for (const std::string& line : explain_picture(image, context)) talk.warn("warning: " + line);
   write_everything(options, job, image, talk, watch);
   talk.line.clear();

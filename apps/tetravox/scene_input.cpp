@@ -64,6 +64,13 @@ void override_data(const InputOptions& options, SceneData& data) {
   if (options.association) data.array.association = options.association;
   if (options.component) data.array.component = options.component;
   if (options.time.index || options.time.value) data.time = options.time;
+  const RawLayout& raw = options.raw;
+  if (raw.dimensions) data.raw.dimensions = raw.dimensions;
+  if (raw.type) data.raw.type = raw.type;
+  if (raw.components) data.raw.components = raw.components;
+  if (raw.spacing) data.raw.spacing = raw.spacing;
+  if (raw.is_big_endian) data.raw.is_big_endian = raw.is_big_endian;
+  data.raw.header_bytes = options.header_bytes.value_or(data.raw.header_bytes);
 }
 
 /// `path` for a file in `directory`, see `data_seen_from`.
@@ -110,6 +117,7 @@ SceneInput load_scene_input(const InputOptions& options) {
   }
   input.read.array = data.array;
   input.read.time = data.time;
+  input.read.raw = data.raw;
   input.read.grid_file = solution;
   input.read.timeout = options.reader_timeout;
   return input;

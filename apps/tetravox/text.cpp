@@ -29,6 +29,10 @@ std::string format_range(const ValueRange& range) {
   return format_number(range.min) + " .. " + format_number(range.max);
 }
 
+std::string format_bounds(const std::array<ValueRange, 3>& bounds) {
+  return "x " + format_range(bounds[0]) + ", y " + format_range(bounds[1]) + ", z " + format_range(bounds[2]);
+}
+
 std::string format_bytes(std::uint64_t bytes) {
   constexpr std::array<const char*, 5> kUnits{"bytes", "KiB", "MiB", "GiB", "TiB"};
   double value = static_cast<double>(bytes);

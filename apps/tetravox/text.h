@@ -4,6 +4,7 @@
 
 #include "tetravox/dataset.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -17,6 +18,8 @@ std::string format_count(std::uint64_t count);
 std::string format_number(double value, int digits = 5);
 /// "0.19 .. 4.98".
 std::string format_range(const ValueRange& range);
+/// "x 0 .. 1, y 0 .. 2, z -1 .. 1".
+std::string format_bounds(const std::array<ValueRange, 3>& bounds);
 /// "1.5 GiB", "312 MiB".
 std::string format_bytes(std::uint64_t bytes);
 /// "0.31 s", "2 min 5 s".

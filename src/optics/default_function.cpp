@@ -19,6 +19,7 @@ constexpr int kShellCount = 6;
 constexpr double kShellWidth = 0.22;  // half width, in distances between shells
 constexpr double kBodyShare = 0.10;   // extinction between the shells, relative to their peaks
 constexpr double kRarity = 0.75;      // 0: alike; 1: every value has the same share of the optical depth
+constexpr double kFadeWidth = 0.04;   // of the range, next to a background
 constexpr std::size_t kLargestLabelCount = 40;
 constexpr std::size_t kLargestBinCount = 1024;
 
@@ -126,6 +127,25 @@ TransferFunction constant_function(const Histogram& histogram, bool invert) {
   return function;
 }
 
+/// How much of a bin's extinction is left near a background: nothing in it, and all of it a little further on.
+double fade_from_background(const Histogram& histogram, double value) {
+  if (!histogram.background) return 1.0;
+  const ValueRange& background = *histogram.background;
+  const double fade = kFadeWidth * (histogram.range.max - histogram.range.min);
+  const bool is_low = background.max <= 0.5 * (histogram.range.min + histogram.range.max);
+  return std::clamp((is_low ? value - background.max : background.min - value) / fade, 0.0, 1.0);
+}
+
+/// Makes the background transparent, beyond the end of the function that it is at.
+void end_at_background(const Histogram& histogram, TransferFunction& function) {
+  if (!histogram.background || function.points.empty()) return;
+  const ControlPoint &first = function.points.front(), &last = function.points.back();
+  if (histogram.background->max <= first.value)
+    function.points.insert(function.points.begin(), {histogram.background->max, first.color, 0.0});
+  else if (histogram.background->min >= last.value)
+    function.points.push_back({histogram.background->min, last.color, 0.0});
+}
+
 /// Few separate values (labels, materials): a flat piece for each, with a step half way to the next.
 TransferFunction label_function(const Histogram& histogram, const std::vector<double>& shares,
                                 const std::vector<std::size_t>& labels, bool invert) {
@@ -153,6 +173,7 @@ TransferFunction label_function(const Histogram& histogram, const std::vector<do
     function.points.push_back({value_at(begin), color, opacity});
     function.points.push_back({value_at(end), color, opacity});
   }
+  end_at_background(histogram, function);
   return function;
 }
 
@@ -196,9 +217,11 @@ TransferFunction make_default_transfer_function(const Histogram& histogram, bool
   function.unit_distance = histogram.unit_distance;
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(shares.size());
-    function.points.push_back({std::lerp(histogram.range.min, histogram.range.max, t), color_at(u[i], invert),
-                               opacity_from_extinction(extinctions[i])});
+    const double value = std::lerp(histogram.range.min, histogram.range.max, t);
+    function.points.push_back({value, color_at(u[i], invert),
+                               opacity_from_extinction(extinctions[i] * fade_from_background(histogram, value))});
   }
+  end_at_background(histogram, function);
   return function;
 }
 

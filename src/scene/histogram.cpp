@@ -1,5 +1,6 @@
 #include "src/scene/cell_samples.h"
-#include "tetravox/error.h"
+#include "src/scene/histogram_limits.h"
+#include "src/scene/robust_range.h"
 #include "tetravox/scene.h"
 
 #include <algorithm>
@@ -12,10 +13,7 @@ namespace {
 using scene::CellSample;
 
 constexpr std::size_t kLargestSampleCount = 100'000;
-constexpr int kLargestBinCount = 1 << 20;
 constexpr int kStepsAcrossBox = 8;
-constexpr double kTail = 1e-3;        // part of the volume at either end that may be an outlier
-constexpr double kOutlierRatio = 20;  // outliers are cut off when they make the range this much wider
 
 /// Adds one cell. Four points of equal weight (Keast 1986) stand for its inside; each is spread evenly over a quarter
 /// of the cell's range, so that a large cell leaves no gaps.
@@ -42,30 +40,6 @@ std::vector<double> count_cells(const std::vector<CellSample>& samples, const Va
   return counts;
 }
 
-/// The part of `range` that holds all but a tail at either end, in whole bins.
-ValueRange without_tails(const ValueRange& range, const std::vector<double>& counts) {
-  double total = 0.0;
-  for (const double count : counts) total += count;
-  std::size_t first = 0, last = counts.size() - 1;
-  for (double below = counts[first]; first < last && below <= kTail * total; below += counts[++first]) {
-  }
-  for (double above = counts[last]; last > first && above <= kTail * total; above += counts[--last]) {
-  }
-  const double width = (range.max - range.min) / static_cast<double>(counts.size());
-  return {range.min + width * static_cast<double>(first), range.min + width * static_cast<double>(last + 1)};
-}
-
-/// The range of stored scalars, without a few outliers that would press everything else into one bin.
-ValueRange robust_range(const std::vector<CellSample>& samples, ValueRange range) {
-  constexpr int kBins = 1024, kLargestZoomCount = 12;
-  for (int zoom = 0; zoom < kLargestZoomCount; ++zoom) {
-    const ValueRange inner = without_tails(range, count_cells(samples, range, kBins));
-    if ((inner.max - inner.min) * kOutlierRatio > range.max - range.min || !(inner.max > inner.min)) break;
-    range = inner;
-  }
-  return range;
-}
-
 double boundary_area(const PreparedMesh& mesh) {
   double area = 0.0;
   for (const BoundaryFace& face : mesh.boundary) {
@@ -80,22 +54,15 @@ double boundary_area(const PreparedMesh& mesh) {
 /// Unit distance for which the mean chord of the mesh, 4 volume / area (Cauchy 1841), is as many units long as that of
 /// a cube of the same diagonal. `volume` is in the local frame.
 std::optional<double> suitable_unit_distance(const PreparedMesh& mesh, double volume) {
-  constexpr double kChordOfCube = 38.49;  // hundredths of the diagonal: 2 / (3 sqrt(3))
-  constexpr double kSmallest = 1.0 / 20, kLargest = 1.5;
-  const double unit = std::hypot(mesh.bounds[0].max - mesh.bounds[0].min, mesh.bounds[1].max - mesh.bounds[1].min,
-                                 mesh.bounds[2].max - mesh.bounds[2].min) /
-                      100.0;
   const double area = boundary_area(mesh);
-  if (!(unit > 0.0) || !(area > 0.0) || !(volume > 0.0)) return std::nullopt;
-  const double chord = 4.0 * volume / area * mesh.world_per_local;
-  return std::clamp(chord / kChordOfCube, kSmallest * unit, kLargest * unit);
+  if (!(area > 0.0) || !(volume > 0.0)) return std::nullopt;
+  return scene::unit_distance_for_chord(4.0 * volume / area * mesh.world_per_local, mesh.bounds);
 }
 
 }  // namespace
 
 Histogram make_histogram(const PreparedMesh& mesh, int bins) {
-  if (bins < 1 || bins > kLargestBinCount)
-    throw Error(ErrorCode::kInvalidArgument, "a histogram has from 1 to 1048576 bins");
+  scene::require_bin_count(bins);
   Histogram histogram;
   histogram.range = mesh.scalar_range;
   histogram.counts.resize(static_cast<std::size_t>(bins));
@@ -111,7 +78,8 @@ Histogram make_histogram(const PreparedMesh& mesh, int bins) {
     histogram.counts[histogram.counts.size() / 2] = volume > 0.0 ? volume : 1.0;
     return histogram;
   }
-  range = robust_range(samples, range);
+  range =
+      scene::robust_range(range, [&](const ValueRange& part, int count) { return count_cells(samples, part, count); });
   histogram.counts = count_cells(samples, range, bins);
   histogram.range = {mesh.scalar_offset + range.min * mesh.scalar_scale,
                      mesh.scalar_offset + range.max * mesh.scalar_scale};

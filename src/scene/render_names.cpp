@@ -27,7 +27,8 @@ constexpr std::array<Name<Integrator>, 4> kIntegrators{
      {Integrator::kPartial, "partial",
       "exact for piecewise linear functions (Moreland and Angel 2004; Espinha and Celes 2005)"},
      {Integrator::kPost, "post", "post-classification: point samples along each segment, for comparison"},
-     {Integrator::kPre, "pre", "pre-classification: colours and extinctions at the values, interpolated; for comparison"}}};
+     {Integrator::kPre, "pre",
+      "pre-classification: colours and extinctions at the values, interpolated; for comparison"}}};
 
 template <class Names>
 auto enumerator_from_name(const Names& names, std::string_view name, std::string_view what) {

@@ -3,6 +3,8 @@
 #include "tetravox/scene.h"
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 namespace tetravox {
 namespace {
@@ -13,6 +15,10 @@ using Json = nlohmann::ordered_json;
 constexpr int kSceneVersion = 1;
 constexpr int kLargestSampleCount = 4096;
 constexpr int kLargestComponent = 1'000'000;
+constexpr int kLargestComponentCount = 4;
+constexpr long long kLargestDimension = 0xFFFFFFFE;
+constexpr long long kLargestHeader = 1LL << 53;
+constexpr double kLargestRate = 64.0;  // samples per voxel
 
 /// Calls `action`; what it throws is told as an error of the file, at `place`.
 template <class Action>
@@ -39,15 +45,35 @@ std::string read_file_name(const JsonPlace& place) {
   return name;
 }
 
+/// The keys of `place` that say how the bytes of a RAW file are to be understood.
+void read_raw_layout(const JsonPlace& place, RawLayout& raw) {
+  if (const auto dimensions = place.find("dimensions")) {
+    if (dimensions->size() != 3) dimensions->fail("expected three numbers, points along x, y and z");
+    raw.dimensions.emplace();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      (*raw.dimensions)[axis] = static_cast<std::uint32_t>(dimensions->at(axis).integer(1, kLargestDimension));
+  }
+  if (const auto type = place.find("scalar_type"))
+    raw.type = at_place(*type, [&] { return scalar_type_from_name(type->string()); });
+  if (const auto components = place.find("components"))
+    raw.components = static_cast<int>(components->integer(1, kLargestComponentCount));
+  if (const auto spacing = place.find("spacing")) {
+    raw.spacing.emplace();
+    spacing->numbers(raw.spacing->data(), 3);
+    for (const double step : *raw.spacing)
+      if (!(step > 0.0)) spacing->fail("expected three numbers above 0");
+  }
+  if (const auto is_big_endian = place.find("big_endian")) raw.is_big_endian = is_big_endian->boolean();
+  if (const auto header = place.find("header_bytes"))
+    raw.header_bytes = static_cast<std::uint64_t>(header->integer(0, kLargestHeader));
+}
+
 SceneData read_data(const JsonPlace& place) {
-  place.require_keys({"file", "solution_file", "array", "association", "component", "time"});
+  place.require_keys({"file", "solution_file", "array", "association", "component", "time", "dimensions", "scalar_type",
+                      "components", "spacing", "big_endian", "header_bytes"});
   SceneData data;
   data.file = read_file_name(place.at("file"));
   if (const auto solution = place.find("solution_file")) data.solution_file = read_file_name(*solution);
-  if (const auto solution = place.find("solution_file")) {
-    data.solution_file = solution->string();
-    if (data.solution_file.find('\0') != std::string::npos) solution->fail("not a file name");
-  }
   if (const auto array = place.find("array")) data.array.name = array->string();
   if (const auto association = place.find("association")) {
     if (association->string() != "point" && association->string() != "cell")
@@ -63,6 +89,7 @@ SceneData read_data(const JsonPlace& place) {
       component->fail("expected 0, 1, 2, ... or \"magnitude\"");
   }
   if (const auto time = place.find("time")) read_time(*time, data.time);
+  read_raw_layout(place, data.raw);
   return data;
 }
 
@@ -96,11 +123,14 @@ void read_image(const JsonPlace& place, Scene& scene) {
 }
 
 void read_render(const JsonPlace& place, RenderSettings& settings) {
-  place.require_keys({"source", "integrator", "tolerance", "samples", "early_ray_termination"});
+  place.require_keys(
+      {"source", "integrator", "filter", "tolerance", "samples", "samples_per_voxel", "early_ray_termination"});
   if (const auto source = place.find("source"))
     settings.source = at_place(*source, [&] { return source_from_name(source->string()); });
   if (const auto integrator = place.find("integrator"))
     settings.integrator = at_place(*integrator, [&] { return integrator_from_name(integrator->string()); });
+  if (const auto filter = place.find("filter"))
+    settings.filter = at_place(*filter, [&] { return filter_from_name(filter->string()); });
   if (const auto tolerance = place.find("tolerance")) {
     settings.tolerance = tolerance->number();
     if (!(settings.tolerance >= kSmallestTolerance && settings.tolerance <= 1.0))
@@ -108,6 +138,11 @@ void read_render(const JsonPlace& place, RenderSettings& settings) {
   }
   if (const auto samples = place.find("samples"))
     settings.samples = static_cast<int>(samples->integer(1, kLargestSampleCount));
+  if (const auto rate = place.find("samples_per_voxel")) {
+    settings.samples_per_voxel = rate->number();
+    if (!(settings.samples_per_voxel > 0.0 && settings.samples_per_voxel <= kLargestRate))
+      rate->fail("expected a number above 0, at most 64; leave it out for as many as the tolerance asks");
+  }
   if (const auto use = place.find("early_ray_termination")) settings.use_early_ray_termination = use->boolean();
 }
 
@@ -142,13 +177,19 @@ Json write_data(const SceneData& data) {
   Json json;
   json["file"] = data.file;
   if (!data.solution_file.empty()) json["solution_file"] = data.solution_file;
-  if (!data.solution_file.empty()) json["solution_file"] = data.solution_file;
   if (!data.array.name.empty()) json["array"] = data.array.name;
   if (data.array.association) json["association"] = *data.array.association == Association::kPoint ? "point" : "cell";
   if (data.array.component && *data.array.component == kMagnitude) json["component"] = "magnitude";
   if (data.array.component && *data.array.component != kMagnitude) json["component"] = *data.array.component;
   if (data.time.index) json["time"]["index"] = *data.time.index;
   if (data.time.value) json["time"]["value"] = *data.time.value;
+  const RawLayout& raw = data.raw;
+  if (raw.dimensions) json["dimensions"] = *raw.dimensions;
+  if (raw.type) json["scalar_type"] = scalar_type_name(*raw.type);
+  if (raw.components) json["components"] = *raw.components;
+  if (raw.spacing) json["spacing"] = *raw.spacing;
+  if (raw.is_big_endian) json["big_endian"] = *raw.is_big_endian;
+  if (raw.header_bytes > 0) json["header_bytes"] = raw.header_bytes;
   return json;
 }
 
@@ -168,8 +209,10 @@ Json write_render(const RenderSettings& settings) {
   Json json;
   if (settings.source) json["source"] = name_of(*settings.source);
   json["integrator"] = name_of(settings.integrator);
+  if (settings.filter != Filter{}) json["filter"] = name_of(settings.filter);
   json["tolerance"] = settings.tolerance;
   json["samples"] = settings.samples;
+  if (settings.samples_per_voxel > 0.0) json["samples_per_voxel"] = settings.samples_per_voxel;
   json["early_ray_termination"] = settings.use_early_ray_termination;
   return json;
 }

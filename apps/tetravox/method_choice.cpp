@@ -1,0 +1,108 @@
+#include "apps/tetravox/method_choice.h"
+
+#include "tetravox/error.h"
+
+#include <array>
+#include <cstddef>
+
+namespace tetravox::tool {
+namespace {
+
+struct ClassificationEntry {
+  Classification value;
+  const char* name;
+  const char* description;
+};
+
+constexpr std::array<ClassificationEntry, 3> kClassifications{
+    {{Classification::kPreintegrated, "preintegrated",
+      "the function is integrated along each segment: integrators antiderivative, partial (default)"},
+     {Classification::kPost, "post", "the function is looked up at samples: integrator post; for comparison"},
+     {Classification::kPre, "pre",
+      "grids: the function is looked up at the values, colours are interpolated: integrator pre; for comparison"}}};
+
+Classification classification_of(Integrator integrator) {
+  if (integrator == Integrator::kPost) return Classification::kPost;
+  if (integrator == Integrator::kPre) return Classification::kPre;
+  return Classification::kPreintegrated;
+}
+
+/// The integrator that a classification stands for, where nothing says more.
+Integrator integrator_of(Classification classification) {
+  if (classification == Classification::kPost) return Integrator::kPost;
+  if (classification == Classification::kPre) return Integrator::kPre;
+  return Integrator::kAntiderivative;
+}
+
+/// Says that `what` is for the other kind of data: as an option, or as a key of the scene.
+[[noreturn]] void refuse(bool is_option, const std::string& option, const std::string& key, bool is_grid,
+                         const std::string& data_name) {
+  const std::string text = "is for " + std::string(is_grid ? "meshes" : "grids") + ", and '" + data_name + "' is a " +
+                           (is_grid ? "grid" : "mesh") + ": leave it out";
+  if (is_option) throw UsageError(option + ": " + text);
+  throw Error(ErrorCode::kInvalidArgument, "the scene's render." + key + " " + text);
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> classification_names() {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const ClassificationEntry& entry : kClassifications) names.emplace_back(entry.name, entry.description);
+  return names;
+}
+
+Classification parse_classification(const std::string& option, const std::string& text) {
+  std::vector<std::string> names;
+  for (const ClassificationEntry& entry : kClassifications) names.emplace_back(entry.name);
+  return kClassifications[parse_choice(option, text, names)].value;
+}
+
+void require_consistent(const MethodOptions& method) {
+  if (!method.classification || !method.integrator) return;
+  const auto& entry = kClassifications[static_cast<std::size_t>(*method.classification)];
+  if (classification_of(*method.integrator) != entry.value)
+    throw UsageError("--classification " + std::string(entry.name) + " and --integrator " +
+                     name_of(*method.integrator) + " contradict each other: leave one out");
+}
+
+void override_method(const MethodOptions& method, RenderSettings& settings) {
+  if (method.source) settings.source = method.source;
+  if (method.classification && classification_of(settings.integrator) != *method.classification)
+    settings.integrator = integrator_of(*method.classification);
+  settings.integrator = method.integrator.value_or(settings.integrator);
+  settings.filter = method.filter.value_or(settings.filter);
+  settings.samples = method.samples.value_or(settings.samples);
+  settings.samples_per_voxel = method.samples_per_voxel.value_or(settings.samples_per_voxel);
+  settings.tolerance = method.tolerance.value_or(settings.tolerance);
+  settings.use_early_ray_termination = method.use_early_ray_termination.value_or(settings.use_early_ray_termination);
+  settings.threads = method.threads;
+  settings.instruction_set = method.instruction_set;
+}
+
+std::vector<std::string> check_method(const MethodOptions& method, const RenderSettings& settings, bool is_grid,
+                                      const std::string& data_name) {
+  const auto require = [&](bool is_suitable, bool is_option, const char* option, const char* key) {
+    if (!is_suitable) refuse(is_option, option, key, is_grid, data_name);
+  };
+  const Source source = is_grid ? Source::kMarch : Source::kWalk;
+  require(settings.source.value_or(source) == source, method.source.has_value(), "--source", "source");
+  require(is_grid || settings.filter == Filter{}, method.filter.has_value(), "--filter", "filter");
+  require(is_grid || settings.samples_per_voxel == 0.0, method.samples_per_voxel.has_value(), "--samples-per-voxel",
+          "samples_per_voxel");
+  require(is_grid || settings.integrator != Integrator::kPre, method.integrator || method.classification,
+          method.classification ? "--classification pre" : "--integrator pre", "integrator 'pre'");
+
+  std::vector<std::string> lines;
+  const std::string integrator = name_of(settings.integrator);
+  if (method.samples && settings.integrator != Integrator::kPost)
+    lines.push_back("--samples changes nothing: it is for --integrator post, and this picture is drawn by " +
+                    integrator);
+  // Segments of a mesh are its cells, and only `antiderivative` looks at the tolerance inside; a grid's follow it.
+  const bool has_fixed_segments = !is_grid || settings.samples_per_voxel > 0.0;
+  if (method.tolerance && settings.integrator != Integrator::kAntiderivative && has_fixed_segments)
+    lines.push_back("--tolerance changes nothing: the integrator " + integrator +
+                    (is_grid ? " with --samples-per-voxel takes segments as they are" : " takes each cell as it is"));
+  return lines;
+}
+
+}  // namespace tetravox::tool
