@@ -220,8 +220,7 @@ struct LatticeRays {
     for (int axis = 0; axis < 3; ++axis) {
       const Mask rising = hn::Ge(directions[axis], constant(0.0f));
       const Int sign = hn::IfThenElse(int_mask(rising), hn::Set(kInt, 1), hn::Set(kInt, -1));
-      const Int moved = hn::Add(indices[axis], hn::IfThenElseZero(int_mask(crossed[axis]), sign));
-      indices[axis] = hn::Min(hn::Max(moved, hn::Zero(kInt)), hn::Set(kInt, brick_.cells[axis] - 1));
+      indices[axis] = hn::Add(indices[axis], hn::IfThenElseZero(int_mask(crossed[axis]), sign));
       find_plane(axis);
     }
   }
@@ -230,11 +229,14 @@ struct LatticeRays {
   HWY_INLINE void find_plane(int axis) {
     const Mask parallel = hn::Lt(hn::Abs(directions[axis]), constant(kParallel));
     const Mask rising = hn::Ge(directions[axis], constant(0.0f));
-    const Float low = hn::GatherIndex(kFloat, brick_.planes[axis], indices[axis]);
-    const Float high = hn::GatherIndex(kFloat, brick_.planes[axis] + 1, indices[axis]);
+    const Int last = hn::Set(kInt, brick_.cells[axis] - 1);
+    const Int index = hn::Min(hn::Max(indices[axis], hn::Zero(kInt)), last);
+    const Mask beyond = hn::RebindMask(kFloat, hn::Ne(index, indices[axis]));  // by rounding, at the brick's end
+    const Float low = hn::GatherIndex(kFloat, brick_.planes[axis], index);
+    const Float high = hn::GatherIndex(kFloat, brick_.planes[axis] + 1, index);
     const Float direction = hn::IfThenElse(parallel, constant(1.0f), directions[axis]);
     const Float depth = hn::Div(hn::Sub(hn::IfThenElse(rising, high, low), origins[axis]), direction);
-    next[axis] = hn::IfThenElse(parallel, constant(kNever), depth);
+    next[axis] = hn::IfThenElse(hn::Or(parallel, beyond), constant(kNever), depth);
     rate[axis] = hn::IfThenElse(parallel, constant(0.0f), hn::Neg(hn::Div(direction, hn::Sub(high, low))));
   }
 
