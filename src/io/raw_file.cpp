@@ -99,20 +99,24 @@ std::string types_of_size(std::uint64_t bytes) {
   }
 }
 
-/// What to try with a file of `file_bytes`, in words: types and components that fit the dimensions.
+/// What to try with a file of `file_bytes`, in words: types and components that fit the dimensions, and a header that
+/// leaves the `value_bytes` of the layout. Empty where nothing does.
 std::string propose(const std::array<std::uint32_t, 3>& dimensions, std::uint64_t file_bytes,
-                    std::uint64_t header_bytes) {
+                    std::uint64_t header_bytes, std::optional<std::uint64_t> value_bytes) {
   const auto points = multiply({dimensions[0], dimensions[1], dimensions[2]});
-  std::string text;
+  std::vector<std::string> proposals;
   if (points && *points > 0 && file_bytes > header_bytes && (file_bytes - header_bytes) % *points == 0) {
     const std::uint64_t tuple = (file_bytes - header_bytes) / *points;
     for (std::uint64_t components = 1; components <= 4; ++components) {
       const std::string types = tuple % components == 0 ? types_of_size(tuple / components) : "";
-      if (types.empty()) continue;
-      text += text.empty() ? "" : "; or ";
-      text += (components > 1 ? "--components " + std::to_string(components) + " " : "") + "--scalar-type " + types;
+      const std::string prefix = components > 1 ? "--components " + std::to_string(components) + " " : "";
+      if (!types.empty()) proposals.push_back(prefix + "--scalar-type " + types);
     }
   }
+  if (value_bytes && file_bytes > *value_bytes)
+    proposals.push_back("--header-bytes " + std::to_string(file_bytes - *value_bytes));
+  std::string text;
+  for (const std::string& proposal : proposals) text += (text.empty() ? "" : "; or ") + proposal;
   return text.empty() ? text : text + " would fit";
 }
 
@@ -143,7 +147,7 @@ Layout complete_layout(const std::string& path, const RawLayout& given, std::uin
   layout.header_bytes = given.header_bytes;
   const std::optional<ScalarType> type = given.type ? given.type : named.type;
   if (!type) {
-    const std::string proposal = propose(layout.shape.dimensions, file_bytes, given.header_bytes);
+    const std::string proposal = propose(layout.shape.dimensions, file_bytes, given.header_bytes, {});
     fail(ErrorCode::kInvalidArgument, path,
          "its number type is not known: " + (proposal.empty() ? "give --scalar-type" : proposal));
   }
@@ -175,10 +179,7 @@ std::size_t check_size(const std::string& path, const Layout& layout, std::uint6
   message += describe_dimensions(dimensions) + (components > 1 ? " x " + std::to_string(components) : "") + " " +
              scalar_type_name(layout.type) + " are " +
              (is_known ? std::to_string(wanted) : "more than any file holds") + ": ";
-  std::string proposal = propose(dimensions, file_bytes, layout.header_bytes);
-  if (is_known && file_bytes > *values)
-    proposal = "--header-bytes " + std::to_string(file_bytes - *values) +
-               (proposal.empty() ? " would fit" : ", or " + proposal);
+  const std::string proposal = propose(dimensions, file_bytes, layout.header_bytes, values);
   fail(ErrorCode::kBadFile, path,
        message +
            (proposal.empty() ? "give the --dimensions and --scalar-type that the file was written with" : proposal));

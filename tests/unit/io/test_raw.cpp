@@ -312,10 +312,17 @@ TEST(Raw, FilesThatCannotBeRead) {
   expect_words(error_of(directory.file("folder_2x2x2_uint8.raw")), ErrorCode::kUnsupported, {"is a directory"});
   ASSERT_EQ(mkfifo(directory.file("pipe_2x2x2_uint8.raw").c_str(), 0600), 0);
   expect_words(error_of(directory.file("pipe_2x2x2_uint8.raw")), ErrorCode::kBadFile, {"not a regular file"});
+}
+
+TEST(Raw, HasNoTimeSteps) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.file("a_2x2x2_uint8.raw");
+  test::write_text(path, "abcdefgh");
   ReadOptions options;
+  options.time.index = 0;
+  EXPECT_EQ(read_dataset(path, options).info.time_index, 0u);
   options.time.index = 3;
-  test::write_text(directory.file("a_2x2x2_uint8.raw"), "abcdefgh");
-  EXPECT_EQ(read_dataset(directory.file("a_2x2x2_uint8.raw"), options).info.time_index, 0u);
+  EXPECT_THROW(read_dataset(path, options), Error);
 }
 
 TEST(Raw, TellsProgressAndStops) {
