@@ -1,7 +1,9 @@
-/// The picture does not depend on where the mesh lies, how large it is, or what its values are measured in.
+/// The picture does not depend on where a mesh or grid lies, how large it is, or what its values are measured in.
 
 #include "tests/analytic/closed_form.h"
+#include "tests/common/body.h"
 #include "tests/common/draw.h"
+#include "tests/common/grid_builder.h"
 #include "tests/common/image_compare.h"
 #include "tests/common/mesh_builder.h"
 
@@ -23,10 +25,16 @@ MeshData make_wavy_box() {
   return tests::make_box(options, wavy_field);
 }
 
+GridData make_wavy_grid() {
+  tests::GridOptions options;
+  options.dimensions = {20, 18, 15};
+  return tests::make_grid(options, wavy_field);
+}
+
 /// Opacities for the automatic unit distance: the diagonal of the bounds over 100.
-OpticalFunction make_function(const PreparedMesh& mesh) {
+OpticalFunction make_function(const tests::Body& body) {
   double squares = 0.0;
-  for (const ValueRange& range : mesh.bounds) squares += (range.max - range.min) * (range.max - range.min);
+  for (const ValueRange& range : body.bounds()) squares += (range.max - range.min) * (range.max - range.min);
   TransferFunction function{{{-1.5, {0.1, 0.2, 0.9}, 0.0},
                              {-0.4, {0.2, 0.9, 0.5}, 0.15},
                              {0.1, {0.9, 0.8, 0.2}, 0.01},
@@ -55,21 +63,28 @@ void PrintTo(const Frame& frame, std::ostream* out) { *out << frame.name; }
 
 class Frames : public ::testing::TestWithParam<Frame> {};
 
-TEST_P(Frames, ThePictureIsTheSame) {
-  const auto [label, factor, centre] = GetParam();
-  const MeshData mesh = make_wavy_box();
-  const MeshData moved = tests::transform_mesh(mesh, factor, centre);
-  const PreparedMesh prepared = prepare_mesh(mesh), prepared_moved = prepare_mesh(moved);
+/// Draws a body and the same moved, each with a function for its size.
+void expect_same(const tests::Body& body, const tests::Body& moved, const Frame& frame, double bound) {
   for (const auto& [name, camera] : standard_cameras()) {
     for (const Integrator integrator : tests::kAllIntegrators) {
       const RenderSettings settings = make_settings(integrator, 80, 60);
-      const Image expected = render(prepared, make_function(prepared), camera, settings);
+      const Image expected = body.draw(make_function(body), camera, settings);
       const Image actual =
-          render(prepared_moved, make_function(prepared_moved), transform_camera(camera, factor, centre), settings);
+          moved.draw(make_function(moved), transform_camera(camera, frame.factor, frame.centre), settings);
       EXPECT_GT(tests::count_covered(expected), 1000u);
-      EXPECT_TRUE(images_agree(actual, expected, 1e-3)) << label << " " << name << " " << name_of(integrator);
+      EXPECT_TRUE(images_agree(actual, expected, bound)) << frame.name << " " << name << " " << name_of(integrator);
     }
   }
+}
+
+TEST_P(Frames, ThePictureOfAMeshIsTheSame) {
+  const MeshData mesh = make_wavy_box();
+  expect_same(mesh, tests::transform_mesh(mesh, GetParam().factor, GetParam().centre), GetParam(), 1e-3);
+}
+
+TEST_P(Frames, ThePictureOfAGridIsTheSame) {
+  const GridData grid = make_wavy_grid();
+  expect_same(grid, tests::transform_grid(grid, GetParam().factor, GetParam().centre), GetParam(), 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Frames,
@@ -88,24 +103,27 @@ void PrintTo(const Values& values, std::ostream* out) { *out << values.name; }
 
 class ValueFrames : public ::testing::TestWithParam<Values> {};
 
-TEST_P(ValueFrames, ThePictureIsTheSame) {
-  const auto [label, factor, offset] = GetParam();
-  tests::BoxOptions options;
-  const PreparedMesh expected_mesh = prepare_mesh(tests::make_box(options, wavy_field));
-  const PreparedMesh actual_mesh = prepare_mesh(
-      tests::make_box(options, [f = factor, o = offset](const Vector3& p) { return o + f * wavy_field(p); }));
+/// Draws two bodies, the second with values factor * v + offset.
+void expect_same_values(const tests::Body& expected, const tests::Body& actual, const Values& values) {
   OpticalFunction function{
       {{-1.0, 0.0, {0, 0, 1}}, {0.0, 2.0, {0, 1, 0}}, {0.3, 0.1, {1, 0, 0}}, {1.0, 3.0, {1, 1, 1}}}};
   OpticalFunction shifted = function;
-  for (OpticalPoint& point : shifted.points) point.value = offset + factor * point.value;
+  for (OpticalPoint& point : shifted.points) point.value = values.offset + values.factor * point.value;
   for (const auto& [name, camera] : standard_cameras()) {
     for (const Integrator integrator : tests::kExactIntegrators) {
       const RenderSettings settings = make_settings(integrator, 80, 60);
-      EXPECT_TRUE(images_agree(render(actual_mesh, shifted, camera, settings),
-                               render(expected_mesh, function, camera, settings), 1e-3))
-          << label << " " << name << " " << name_of(integrator);
+      EXPECT_TRUE(images_agree(actual.draw(shifted, camera, settings), expected.draw(function, camera, settings), 1e-3))
+          << values.name << " " << name << " " << name_of(integrator);
     }
   }
+}
+
+TEST_P(ValueFrames, ThePictureIsTheSame) {
+  const auto shifted_field = [&](const Vector3& p) { return GetParam().offset + GetParam().factor * wavy_field(p); };
+  expect_same_values(tests::make_box({}, wavy_field), tests::make_box({}, shifted_field), GetParam());
+  tests::GridOptions options;
+  options.type = ScalarType::kFloat64;
+  expect_same_values(tests::make_grid(options, wavy_field), tests::make_grid(options, shifted_field), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ValueFrames,
