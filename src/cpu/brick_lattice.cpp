@@ -73,11 +73,12 @@ void BrickLattice::fill(const LatticeField& field, MarchBrick& brick) {
   if (field.kernel) {
     filter_values(field, brick);
   } else {
-    if (!field.is_constant)
+    if (!field.is_constant || field.is_nearest)
       for (std::int64_t& count : block_.count) ++count;
     values_.resize(static_cast<std::size_t>(block_.size()));
     field.reader->read(block_, values_.data());
   }
+  if (field.is_nearest) spread_values(brick);
   if (field.is_constant) {
     brick.constants = values_.data();
   } else if (field.points) {
@@ -101,6 +102,19 @@ void BrickLattice::place_planes(MarchBrick& brick, int parts) {
     planes_[axis].push_back(cells.back());
     brick.planes[axis] = planes_[axis].data();
   }
+}
+
+/// Halves each cell along each axis: half a cell has the value of the point that it touches.
+void BrickLattice::spread_values(MarchBrick& brick) {
+  margin_.swap(values_);
+  values_.clear();
+  for (std::int32_t& cells : brick.cells) cells *= 2;
+  if (brick.is_uneven) place_planes(brick, 2);
+  for (std::int64_t k = 0; k < brick.cells[2]; ++k)
+    for (std::int64_t j = 0; j < brick.cells[1]; ++j)
+      for (std::int64_t i = 0; i < brick.cells[0]; ++i)
+        values_.push_back(margin_[static_cast<std::size_t>(
+            ((k + 1) / 2 * block_.count[1] + (j + 1) / 2) * block_.count[0] + (i + 1) / 2)]);
 }
 
 void BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick) {

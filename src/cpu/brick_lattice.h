@@ -22,6 +22,7 @@ struct LatticeField {
   const grid::SeparableKernel* kernel = nullptr;      ///< null: the values themselves
   const optics::ControlPointTable* points = nullptr;  ///< set for pre-classification: densities instead of scalars
   bool is_constant = false;                           ///< constant cells
+  bool is_nearest = false;                            ///< of them: eighths of cells, each with the value of its corner
   float allowed_rate = 0.0f;                          ///< see MarchJob
 };
 
@@ -39,6 +40,7 @@ class BrickLattice {
   static constexpr int kMostParts = 4;
 
   void place_planes(MarchBrick& brick, int parts);
+  void spread_values(MarchBrick& brick);
   void filter_values(const LatticeField& field, MarchBrick& brick);
   void convolve(const grid::SeparableKernel& kernel, int parts, std::vector<float>& nodes);
   float measure_bend(const std::vector<float>& nodes) const;

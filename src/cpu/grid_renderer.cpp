@@ -274,6 +274,7 @@ LatticeField GridRenderer::lattice_field(const RenderSettings& settings, float a
   field.kernel = field_.kernel.get();
   field.points = settings.integrator == Integrator::kPre && !is_constant(settings) ? &control_points_ : nullptr;
   field.is_constant = is_constant(settings);
+  field.is_nearest = field.is_constant && grid_.data.association == Association::kPoint;
   field.allowed_rate = allowed_rate;
   return field;
 }
@@ -292,11 +293,12 @@ BrickPlan GridRenderer::plan_brick(std::size_t brick, const RenderSettings& sett
   if (!has_rate && !(steepness_.largest_extinction(min, max) > 0.0f)) return plan;
   plan.level = 0;
   if (is_constant(settings) || has_rate || settings.integrator == Integrator::kPre) return plan;
+  const bool has_missing = field_.kernel ? drawn().missing_values > 0 : grid_.bricks.has_missing[brick] != 0;
   const float steepness = steepness_.largest_steepness(min, max);
   const auto is_good = [&](float deviation) { return steepness == 0.0f || deviation * steepness <= allowed_rate; };
   plan.is_curved = field_.kernel ? steepness > 0.0f : !is_good(grid_.bricks.deviation[0][brick]);
   if (field_.kernel) return plan;
-  for (int level = 3; level > 0 && plan.level == 0; --level)
+  for (int level = has_missing ? 0 : 3; level > 0 && plan.level == 0; --level)
     if (is_good(grid_.bricks.deviation[level][brick])) plan.level = static_cast<std::uint8_t>(level);
   plan.is_curved &= plan.level == 0;
   return plan;

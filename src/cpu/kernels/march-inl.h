@@ -349,23 +349,27 @@ class Marcher {
   /// the steepness of the function ask for.
   HWY_INLINE void integrate_curve(const CellCorners& corners, const LatticeRays& rays, Float back, Segments& segment,
                                   typename Integrator::Front& front, Accumulated& sum) const {
-    const Float half = constant(0.5f);
-    const Float middle = corners.eval(rays, hn::Mul(half, hn::Add(rays.front, back)));
-    const Float chord = hn::Mul(half, hn::Add(segment.scalar_front, segment.scalar_back));
-    const Float bend = hn::IfThenElseZero(hn::Gt(segment.length, constant(0.0f)), hn::AbsDiff(middle, chord));
+    // A cubic that keeps to its chord at both thirds is its chord.
+    const auto at = [&](float t) { return multiply_add(constant(t), hn::Sub(back, rays.front), rays.front); };
+    const Float first = corners.eval(rays, at(1.0f / 3.0f)), second = corners.eval(rays, at(2.0f / 3.0f));
+    const Float third = hn::Mul(constant(1.0f / 3.0f), hn::Sub(segment.scalar_back, segment.scalar_front));
+    const Float distance = hn::Max(hn::AbsDiff(first, hn::Add(segment.scalar_front, third)),
+                                   hn::AbsDiff(second, hn::Sub(segment.scalar_back, third)));
+    const Float bend = hn::IfThenElseZero(hn::Gt(segment.length, constant(0.0f)), distance);
     const Mask bent = hn::Gt(hn::Mul(bend, constant(brick_.steepness)), constant(job_.allowed_rate));
     if (HWY_LIKELY(hn::AllFalse(kFloat, bent)))
       integrator_.integrate(segment, front, sum);
     else
-      integrate_pieces(corners, rays, back, middle, bend, segment, front, sum);
+      integrate_pieces(corners, rays, back, bend, segment, front, sum);
   }
 
-  HWY_NOINLINE void integrate_pieces(const CellCorners& corners, const LatticeRays& rays, Float back, Float middle,
-                                     Float bend, const Segments& segment, typename Integrator::Front& front,
+  HWY_NOINLINE void integrate_pieces(const CellCorners& corners, const LatticeRays& rays, Float back, Float bend,
+                                     const Segments& segment, typename Integrator::Front& front,
                                      Accumulated& sum) const {
-    const Float low = hn::Min(hn::Min(segment.scalar_front, segment.scalar_back), middle);
-    const Float high = hn::Max(hn::Max(segment.scalar_front, segment.scalar_back), middle);
-    const Float rate = hn::Mul(bend, find_steepness(hn::Sub(low, bend), hn::Add(high, bend)));
+    const Float low = hn::Min(segment.scalar_front, segment.scalar_back);
+    const Float high = hn::Max(segment.scalar_front, segment.scalar_back);
+    const Float rate = hn::Mul(
+        bend, find_steepness(hn::Sub(low, hn::Mul(bend, constant(1.5f))), multiply_add(bend, constant(1.5f), high)));
     const Float pieces =
         hn::Min(hn::Max(hn::Ceil(hn::Sqrt(hn::Mul(rate, constant(1.0f / job_.allowed_rate)))), constant(1.0f)),
                 constant(job_.most_pieces));
@@ -378,6 +382,8 @@ class Marcher {
       const Float to = hn::IfThenElse(last, constant(1.0f), hn::Mul(number, share));
       piece.scalar_back =
           hn::IfThenElse(last, segment.scalar_back, corners.eval(rays, multiply_add(depth, to, rays.front)));
+      piece.scalar_back =
+          hn::IfThenElse(hn::Eq(piece.scalar_back, piece.scalar_back), piece.scalar_back, segment.scalar_back);
       piece.length = hn::Mul(segment.length, hn::Sub(to, from));
       integrator_.integrate(piece, front, sum);
       if (hn::AllTrue(kFloat, last)) return;
