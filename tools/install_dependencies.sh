@@ -22,6 +22,8 @@ build libvtk9-dev           readers of mesh formats (VTK)
 build libpugixml-dev        reader of PVD collections (XML)
 build libpng-dev            PNG pictures
 build libopenexr-dev        EXR pictures
+build libtiff-dev           reader of TIFF stacks
+build zlib1g-dev            compressed NRRD, MetaImage and NIfTI
 test  libgtest-dev          unit tests (GoogleTest)
 test  libhdf5-dev           VTKHDF files made by the tests (HDF5)
 test  clang-14              fuzz tests (libFuzzer)

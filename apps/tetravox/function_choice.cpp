@@ -81,7 +81,10 @@ Histogram collect_bins(const Histogram& fine, const ValueRange& range, bool use_
     if (!use_logarithm) return (value - range.min) / (range.max - range.min);
     return value > 0.0 ? std::log(value / range.min) / std::log(range.max / range.min) : -1.0;
   };
-  Histogram result{range, std::vector<double>(kBins, 0.0), fine.unit_distance};
+  Histogram result{range, std::vector<double>(kBins, 0.0), fine.unit_distance, fine.background};
+  if (use_logarithm && fine.background)
+    result.background = ValueRange{std::clamp(position(fine.background->min), 0.0, 1.0),
+                                   std::clamp(position(fine.background->max), 0.0, 1.0)};
   const double width = (fine.range.max - fine.range.min) / static_cast<double>(fine.counts.size());
   for (std::size_t i = 0; i < fine.counts.size(); ++i) {
     // Spread each count evenly over the bins that it touches.

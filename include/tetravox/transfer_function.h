@@ -88,8 +88,7 @@ struct Histogram {
   std::vector<double> counts;
   /// World length that suits the shape: the default function's unit distance. Empty: diagonal of the bounds / 100.
   std::optional<double> unit_distance = std::nullopt;
-  /// Values of what surrounds the objects (air), at an end of the range and not counted: the default function makes
-  /// them transparent.
+  /// Values of what surrounds the objects (air), not counted: the default function makes them transparent.
   std::optional<ValueRange> background = std::nullopt;
 };
 

@@ -126,6 +126,7 @@ FileList parse_file_list(const std::string& text, const std::string& source_name
   const std::string type = root.attribute("type").value();
   const pugi::xml_node grid = root.child(type.c_str());
   if (!grid) fail(source_name, "no element '" + type + "' as its type says");
+  list.whole_extent = grid.attribute("WholeExtent").value();
   list.has_ghost_levels = grid.attribute("GhostLevel").as_int(0) > 0;
   if (grid.attribute("WholeExtent") && !list.has_ghost_levels) check_extents(grid, source_name);
   for (const pugi::xml_node& piece : grid.children("Piece")) {
@@ -138,7 +139,7 @@ FileList parse_file_list(const std::string& text, const std::string& source_name
 }
 
 std::uint64_t count_extent_cells(const std::string& extent, const std::string& source_name,
-                                 std::array<std::uint64_t, 3>* points) {
+                                 std::array<std::uint64_t, 3>* points, std::array<std::int32_t, 6>* all_ends) {
   const char* at = extent.data();
   const char* end = at + extent.size();
   std::uint64_t cells = 1;
@@ -154,6 +155,7 @@ std::uint64_t count_extent_cells(const std::string& extent, const std::string& s
     if (length < 0 || length > (1 << 20)) fail(source_name, "an extent makes no sense");
     cells *= static_cast<std::uint64_t>(std::max<std::int64_t>(length, 1));
     if (points) (*points)[axis] = static_cast<std::uint64_t>(length) + 1;
+    if (all_ends) std::copy(ends.begin(), ends.end(), all_ends->begin() + 2 * static_cast<std::ptrdiff_t>(axis));
   }
   return cells;
 }

@@ -1,6 +1,8 @@
 #include "src/io/formats.h"
+#include "src/io/raw_file.h"
 #include "src/io/reader_process.h"
 #include "src/io/time_steps.h"
+#include "src/io/validate_grid.h"
 #include "src/io/validate_mesh.h"
 #include "src/support/memory.h"
 #include "tetravox/io.h"
@@ -21,24 +23,27 @@ int pick_component(const ArrayInfo& array, const ArrayRequest& request) {
   return array.components == 1 ? 0 : request.component.value_or(kMagnitude);
 }
 
-/// Makes an embedded dataset with the field that is asked for.
-Dataset read_builtin(const std::string& path, const ReadOptions& options) {
-  Dataset dataset = make_builtin(path, options.array);
+/// What was made or read here, with the field that is asked for.
+Dataset choose_field(Dataset dataset, const ReadOptions& options, const std::string& path) {
   const ArrayInfo& array = dataset.info.arrays.at(choose_array(dataset.info, options.array));
-  dataset.mesh.component = pick_component(array, options.array);
+  (dataset.is_grid() ? dataset.grid.component : dataset.mesh.component) = pick_component(array, options.array);
   dataset.info.time_index = io::pick_time(dataset.info.times, options.time, path);
-  if (options.only_info) dataset.mesh = {};
+  if (options.only_info) {
+    dataset.mesh = {};
+    dataset.grid = {};
+  }
   return dataset;
 }
 
 void require_drawable(io::Format format, const std::string& path) {
-  if (format == io::Format::kRegularGrid)
+  if (format == io::Format::kHierarchy)
     throw Error(ErrorCode::kUnsupported, "'" + path +
-                                             "' holds a regular grid, and regular grids are not drawn yet: give a mesh "
-                                             "of cells (tetravox list readers)");
+                                             "' holds a hierarchy of refined grids (AMR), which is not drawn: give a "
+                                             "mesh of cells or one grid (tetravox list readers)");
   if (format == io::Format::kSurface)
-    throw Error(ErrorCode::kNothingToDraw,
-                "'" + path + "' holds surfaces only, and tetravox draws volumes: give a mesh of volume cells");
+    throw Error(ErrorCode::kNothingToDraw, "'" + path +
+                                               "' holds surfaces only, and tetravox draws volumes: give a mesh of "
+                                               "volume cells or a grid");
 }
 
 /// A section of the memory file as a span.
@@ -51,14 +56,8 @@ std::span<const T> view_section(const io::SharedMemory& memory, const io::Sectio
   return {reinterpret_cast<const T*>(memory.bytes.data() + section.offset), section.bytes / sizeof(T)};
 }
 
-Dataset view_dataset(const io::SharedMemory& memory, bool only_info) {
-  io::SharedHeader header;
-  std::memcpy(&header, memory.bytes.data(), sizeof header);
-  io::Description description = io::decode_description(view_section<std::byte>(memory, header.description));
-  Dataset dataset;
-  dataset.info = std::move(description.info);
-  if (only_info) return dataset;
-  MeshData& mesh = dataset.mesh;
+MeshData view_mesh(const io::SharedMemory& memory, const io::SharedHeader& header, io::Description& description) {
+  MeshData mesh;
   mesh.points = view_section<double>(memory, header.points);
   mesh.cell_types = view_section<CellType>(memory, header.cell_types);
   mesh.cell_offsets = view_section<std::uint64_t>(memory, header.cell_offsets);
@@ -68,14 +67,55 @@ Dataset view_dataset(const io::SharedMemory& memory, bool only_info) {
   mesh.array_name = std::move(description.array_name);
   mesh.component = description.component;
   mesh.storage = memory.storage;
+  return mesh;
+}
+
+GridData view_grid(const io::SharedMemory& memory, const io::SharedHeader& header, io::Description& description,
+                   const GridShape& shape) {
+  GridData grid;
+  grid.shape = shape;
+  grid.association = description.association;
+  grid.type = description.type;
+  grid.components = description.components;
+  grid.component = description.component;
+  grid.values = view_section<std::byte>(memory, header.values);
+  grid.array_name = std::move(description.array_name);
+  grid.storage = memory.storage;
+  return grid;
+}
+
+Dataset view_dataset(const io::SharedMemory& memory, bool only_info) {
+  io::SharedHeader header;
+  std::memcpy(&header, memory.bytes.data(), sizeof header);
+  io::Description description = io::decode_description(view_section<std::byte>(memory, header.description));
+  Dataset dataset;
+  dataset.info = std::move(description.info);
+  if (only_info) return dataset;
+  if (dataset.is_grid())
+    dataset.grid = view_grid(memory, header, description, *dataset.info.grid);
+  else
+    dataset.mesh = view_mesh(memory, header, description);
   return dataset;
+}
+
+void validate(const Dataset& dataset, bool only_info, const std::string& path) {
+  if (dataset.is_grid()) io::validate_grid_shape(*dataset.info.grid, path);
+  if (only_info) return;
+  if (dataset.is_grid())
+    io::validate_grid(dataset.grid, path);
+  else
+    io::validate_mesh(dataset.mesh, path);
 }
 
 }  // namespace
 
 Dataset read_dataset(const std::string& path, const ReadOptions& options, const Progress& progress) {
-  if (path.starts_with(kBuiltinPrefix)) return read_builtin(path, options);
   if (path.empty()) throw Error(ErrorCode::kInvalidArgument, "no file was named");
+  const bool is_builtin = path.starts_with(kBuiltinPrefix);
+  if (!is_builtin && options.grid_file.empty() && io::is_raw_file(path, options.raw))
+    return choose_field(io::read_raw_file(path, options.raw, progress), options, path);
+  io::require_no_layout(options.raw, path);
+  if (is_builtin) return choose_field(make_builtin(path, options.array), options, path);
   // Find out early what needs no reader process: a missing file, a wrong kind of file.
   require_drawable(io::detect_format(path, !options.grid_file.empty()), path);
   io::ReaderRequest request{path, options, getpid()};
@@ -88,7 +128,7 @@ Dataset read_dataset(const std::string& path, const ReadOptions& options, const 
     throw Error(ErrorCode::kReaderFailed, "the reader of '" + path + "' left data that make no sense (" + error.what() +
                                               "): the file is damaged, or please report this");
   }
-  if (!options.only_info) io::validate_mesh(dataset.mesh, path);
+  validate(dataset, options.only_info, path);
   if (progress.report) progress.report("read", 1.0);
   return dataset;
 }

@@ -10,7 +10,7 @@ namespace tetravox::io {
 
 namespace {
 
-constexpr const char* kVersionArgument = "protocol=1";
+constexpr const char* kVersionArgument = "protocol=2";
 
 std::string format_double(double value) {
   char buffer[64];
@@ -141,6 +141,34 @@ ArrayInfo take_array(ByteReader& in) {
   return array;
 }
 
+void put_shape(ByteWriter& out, const GridShape& shape) {
+  for (const std::uint32_t count : shape.dimensions) out.put(std::uint64_t{count});
+  for (const double value : shape.origin) out.put(value);
+  for (const double value : shape.spacing) out.put(value);
+  for (const double value : shape.direction) out.put(value);
+  for (const std::vector<double>& axis : shape.coordinates) {
+    out.put(std::uint64_t{axis.size()});
+    for (const double value : axis) out.put(value);
+  }
+}
+
+GridShape take_shape(ByteReader& in) {
+  GridShape shape;
+  for (std::uint32_t& count : shape.dimensions) {
+    const std::uint64_t number = in.number();
+    if (number > std::numeric_limits<std::uint32_t>::max()) throw std::out_of_range("a dimension is too large");
+    count = static_cast<std::uint32_t>(number);
+  }
+  for (double& value : shape.origin) value = in.real();
+  for (double& value : shape.spacing) value = in.real();
+  for (double& value : shape.direction) value = in.real();
+  for (std::vector<double>& axis : shape.coordinates) {
+    axis.resize(in.count(sizeof(double)));
+    for (double& value : axis) value = in.real();
+  }
+  return shape;
+}
+
 void put_info(ByteWriter& out, const DatasetInfo& info) {
   out.put(info.source);
   out.put(info.format);
@@ -164,6 +192,8 @@ void put_info(ByteWriter& out, const DatasetInfo& info) {
   out.put(std::uint64_t{info.time_index});
   out.put(std::uint64_t{info.notes.size()});
   for (const std::string& note : info.notes) out.put(note);
+  out.put(std::uint64_t{info.grid.has_value()});
+  if (info.grid) put_shape(out, *info.grid);
 }
 
 DatasetInfo take_info(ByteReader& in) {
@@ -187,6 +217,7 @@ DatasetInfo take_info(ByteReader& in) {
   for (std::size_t i = 0, n = in.count(8); i < n; ++i) info.times.push_back(in.real());
   info.time_index = in.number();
   for (std::size_t i = 0, n = in.count(8); i < n; ++i) info.notes.push_back(in.text());
+  if (in.number() != 0) info.grid = take_shape(in);
   return info;
 }
 
@@ -241,6 +272,8 @@ std::vector<std::byte> encode_description(const Description& description) {
   out.put(description.array_name);
   out.put(static_cast<std::uint64_t>(description.association));
   out.put(static_cast<std::uint64_t>(description.component + 1));  // kMagnitude is -1
+  out.put(static_cast<std::uint64_t>(description.type));
+  out.put(static_cast<std::uint64_t>(description.components));
   return out.take();
 }
 
@@ -251,6 +284,10 @@ Description decode_description(std::span<const std::byte> bytes) {
   description.array_name = in.text();
   description.association = to_association(in.number());
   description.component = static_cast<int>(in.number()) - 1;
+  const std::uint64_t type = in.number();
+  if (type > static_cast<std::uint64_t>(ScalarType::kFloat64)) throw std::out_of_range("a number type is unknown");
+  description.type = static_cast<ScalarType>(type);
+  description.components = static_cast<int>(in.number());
   return description;
 }
 

@@ -49,9 +49,10 @@ struct SharedHeader {
   Section cell_offsets;  ///< uint64 [cells + 1]
   Section connectivity;  ///< uint32
   Section scalars;       ///< double
+  Section values;        ///< of a grid, which has nothing else: see `GridData`
   Section description;   ///< see `encode_description`
 };
-inline constexpr std::uint64_t kSharedMagic = 0x31'58'56'54'52'54'45'54ull;
+inline constexpr std::uint64_t kSharedMagic = 0x32'58'56'54'52'54'45'54ull;
 
 /// Everything that is not an array.
 struct Description {
@@ -59,6 +60,8 @@ struct Description {
   std::string array_name;
   Association association = Association::kPoint;
   int component = 0;
+  ScalarType type = ScalarType::kFloat64;  ///< of a grid's values
+  int components = 1;                      ///< of a grid's values
 };
 
 /// The description as bytes, and back.

@@ -127,13 +127,12 @@ TransferFunction constant_function(const Histogram& histogram, bool invert) {
   return function;
 }
 
-/// How much of a bin's extinction is left near a background: nothing in it, and all of it a little further on.
+/// How much of the extinction is left near a background: nothing in it, and all of it a little further on.
 double fade_from_background(const Histogram& histogram, double value) {
   if (!histogram.background) return 1.0;
   const ValueRange& background = *histogram.background;
   const double fade = kFadeWidth * (histogram.range.max - histogram.range.min);
-  const bool is_low = background.max <= 0.5 * (histogram.range.min + histogram.range.max);
-  return std::clamp((is_low ? value - background.max : background.min - value) / fade, 0.0, 1.0);
+  return std::clamp(std::max(value - background.max, background.min - value) / fade, 0.0, 1.0);
 }
 
 /// Makes the background transparent, beyond the end of the function that it is at.

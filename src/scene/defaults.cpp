@@ -10,8 +10,8 @@
 namespace tetravox {
 namespace {
 
-constexpr int kDefaultBinCount = 512;    // of the histogram behind the default function
-constexpr double kFaintestShown = 2e-3;  // optical depth of a hundredth of the diagonal that counts as shown
+constexpr int kDefaultBinCount = 512;     // of the histogram behind the default function
+constexpr double kFaintestShown = 0.015;  // optical depth of a hundredth of the diagonal that counts as shown
 
 /// The default camera, fitted to the mesh itself: closer than to its bounds.
 Camera make_camera(const PreparedMesh& mesh, double aspect) {

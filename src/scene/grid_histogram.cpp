@@ -34,7 +34,7 @@ std::vector<double> count_values(const scene::GridSamples& samples, const ValueR
 void drop_background(scene::GridSamples& samples, const scene::Background& background) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < samples.values.size(); ++i) {
-    if (background.is_low ? samples.values[i] <= background.end : samples.values[i] >= background.end) continue;
+    if (background.holds(samples.values[i])) continue;
     samples.values[kept] = samples.values[i];
     samples.weights[kept++] = samples.weights[i];
   }
@@ -45,9 +45,8 @@ void drop_background(scene::GridSamples& samples, const scene::Background& backg
 /// The mean chord of the box around everything but the background: 4 volume / area (Cauchy 1841).
 std::optional<double> suitable_unit_distance(const PreparedGrid& grid,
                                              const std::optional<scene::Background>& background) {
-  const auto box = scene::bounds_of_bricks(grid, [&](float min, float max) {
-    return !background || (background->is_low ? max > background->end : min < background->end);
-  });
+  const auto box = scene::bounds_of_bricks(
+      grid, [&](float min, float max) { return !background || !background->holds(min) || !background->holds(max); });
   if (!box) return std::nullopt;
   const double x = (*box)[0].max - (*box)[0].min, y = (*box)[1].max - (*box)[1].min, z = (*box)[2].max - (*box)[2].min;
   const double area = 2.0 * (x * y + y * z + z * x);
@@ -70,10 +69,11 @@ Histogram make_histogram(const PreparedGrid& grid, int bins) {
   ValueRange range{stored(grid.scalar_range.min), stored(grid.scalar_range.max)};
   if (background) {
     drop_background(samples, *background);
-    const double end = std::clamp<double>(background->end, range.min, range.max);
-    histogram.background = background->is_low ? ValueRange{grid.scalar_range.min, value_of(end)}
-                                              : ValueRange{value_of(end), grid.scalar_range.max};
-    (background->is_low ? range.min : range.max) = end;
+    const ValueRange inside{std::clamp<double>(background->low, range.min, range.max),
+                            std::clamp<double>(background->high, range.min, range.max)};
+    histogram.background = ValueRange{value_of(inside.min), value_of(inside.max)};
+    if (std::isinf(background->low)) range.min = inside.max;
+    if (std::isinf(background->high)) range.max = inside.min;
   }
   if (!(range.max > range.min) || samples.values.empty()) {
     histogram.counts[histogram.counts.size() / 2] = 1.0;

@@ -6,17 +6,18 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace tetravox::scene {
 namespace {
 
-constexpr std::size_t kBorderSteps = 96;    // along each edge of a face
-constexpr double kNarrow = 0.12;            // of the values' range: the widest shortest half of a background
-constexpr double kBeyond = 0.02;            // of the volume may lie on the other side of a background
-constexpr int kValleyBins = 128;            // between the background and the other end of the values
-constexpr double kNothing = 0.01;           // of the background's peak: the histogram has fallen to nothing
-constexpr double kLargestReach = 0.3;       // of the way to the other end that a background may take
-constexpr double kFewestForeground = 1e-4;  // of the volume
+constexpr std::size_t kBorderSteps = 96;  // along each edge of a face
+constexpr double kNarrow = 0.12;          // of the values' range: the widest shortest half of a background
+constexpr double kFewest = 1e-3;          // of the volume: an end with less beyond it is open
+constexpr double kShortest = 0.05;        // of the values' range: so is one with less way beyond it
+constexpr int kValleyBins = 128;          // between the background and the other end of the values
+constexpr double kNothing = 0.01;         // of the background's peak: the histogram has fallen to nothing
+constexpr double kLargestReach = 0.3;     // of the way to the other end that a background may take
 
 /// How much space each value has along an axis: half of the distance to either neighbour, or the width of its cell.
 std::vector<double> widths_along(const GridData& grid, std::size_t axis) {
@@ -59,15 +60,23 @@ std::vector<float> read_border(const grid::BlockReader& reader, const std::array
   return border;
 }
 
-/// The value below which this part of the samples' weight lies; `order` sorts them by value.
-float quantile(const GridSamples& samples, const std::vector<std::uint32_t>& order, double part) {
+/// The range of the samples without a thousandth of their weight at either end; all of it where that leaves nothing.
+ValueRange range_of(const GridSamples& samples) {
+  constexpr double kTail = 1e-3;
+  std::vector<std::uint32_t> order(samples.values.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return samples.values[a] < samples.values[b]; });
   double total = 0.0, below = 0.0;
   for (const float weight : samples.weights) total += weight;
+  ValueRange all{samples.values[order.front()], samples.values[order.back()]}, range{all.max, all.min};
   for (const std::uint32_t i : order) {
+    const double value = samples.values[i];
+    if (below + samples.weights[i] > kTail * total) range.min = std::min(range.min, value);
+    if (below <= (1.0 - kTail) * total) range.max = value;
     below += samples.weights[i];
-    if (below >= part * total) return samples.values[i];
   }
-  return samples.values[order.back()];
+  return range.min < range.max ? range : all;
 }
 
 /// Where the histogram has fallen from the peak at `from` to a valley or to nothing, on the way to `to`.
@@ -131,34 +140,26 @@ std::optional<Background> find_background(const GridSamples& samples) {
     if (border[i + half] - border[i] < border[best + half] - border[best]) best = i;
   const double low = border[best], high = border[best + half];
 
-  std::vector<std::uint32_t> order(samples.values.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return samples.values[a] < samples.values[b]; });
-  const double bottom = quantile(samples, order, 1e-3), top = quantile(samples, order, 1.0 - 1e-3);
-  const double least = samples.values[order.front()], most = samples.values[order.back()];
-  // A few objects may be all that differs from the background.
-  const double lowest = std::min(bottom, low), highest = std::max(top, high);
-  const double width = highest > high || lowest < low ? highest - lowest : most - least;
+  const ValueRange range = range_of(samples);
+  const double width = std::max(range.max, high) - std::min(range.min, low);
   if (!(width > 0.0) || high - low > kNarrow * width) return std::nullopt;
 
-  const double margin = high - low;
-  double below = 0.0, above = 0.0, total = 0.0;
-  for (std::size_t i = 0; i < samples.values.size(); ++i) {
-    total += samples.weights[i];
-    if (samples.values[i] < low - margin) below += samples.weights[i];
-    if (samples.values[i] > high + margin) above += samples.weights[i];
-  }
+  // From the peak to either side, as far as the peak reaches; open where nothing much is left beyond.
   const double peak = 0.5 * (low + high);
-  Background background;
-  if (below <= kBeyond * total && above > kFewestForeground * total) {
-    background.end = static_cast<float>(find_valley(samples, peak, highest > high ? highest : most));
-  } else if (above <= kBeyond * total && below > kFewestForeground * total) {
-    background.is_low = false;
-    background.end = static_cast<float>(find_valley(samples, peak, lowest < low ? lowest : least));
-  } else {
-    return std::nullopt;
-  }
+  const auto reach = [&](double end, double direction) {
+    const double open = direction * std::numeric_limits<double>::infinity();
+    if (!(direction * (end - peak) > kShortest * width)) return open;
+    const double valley = find_valley(samples, peak, end);
+    double beyond = 0.0, total = 0.0;
+    for (std::size_t i = 0; i < samples.values.size(); ++i) {
+      total += samples.weights[i];
+      if (direction * (samples.values[i] - valley) > 0.0) beyond += samples.weights[i];
+    }
+    return beyond > kFewest * total ? valley : open;
+  };
+  const Background background{static_cast<float>(reach(std::min(range.min, low), -1.0)),
+                              static_cast<float>(reach(std::max(range.max, high), 1.0))};
+  if (std::isinf(background.low) && std::isinf(background.high)) return std::nullopt;
   return background;
 }
 

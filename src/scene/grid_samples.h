@@ -19,15 +19,15 @@ struct GridSamples {
 /// All rows of values, or evenly spread ones with about `largest_count` values. Deterministic.
 GridSamples sample_grid(const PreparedGrid& grid, std::size_t largest_count);
 
-/// Where the background ends: the stored scalar beyond which values are no longer those around the objects, and on
-/// which side of it the background lies.
+/// Stored scalars of what surrounds the objects. An end beyond which there is next to nothing is open: infinite.
 struct Background {
-  float end = 0.0f;
-  bool is_low = true;  ///< below `end`; otherwise above
+  float low = 0.0f, high = 0.0f;
+
+  bool holds(float value) const { return value >= low && value <= high; }
 };
 
 /// The background, where there is one: at least half of the border lies in a narrow interval (the shortest half,
-/// Rousseeuw and Leroy 1988) at one end of the values, and the histogram falls from there to a valley or to nothing.
+/// Rousseeuw and Leroy 1988); it reaches from there to where the histogram has fallen to a valley or to nothing.
 std::optional<Background> find_background(const GridSamples& samples);
 
 }  // namespace tetravox::scene

@@ -9,7 +9,6 @@
 #include <vtkCommand.h>
 #include <vtkCompositeDataIterator.h>
 #include <vtkCompositeDataSet.h>
-#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkNew.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -60,10 +59,7 @@ void update_reader(vtkAlgorithm& reader, const std::string& path, const TimeRequ
 
 void append_blocks(vtkDataObject* data, FileContents& contents) {
   const auto append = [&](vtkDataObject* object) {
-    if (vtkImageData::SafeDownCast(object))
-      ++contents.regular_grids;
-    else if (auto* set = vtkDataSet::SafeDownCast(object))
-      contents.blocks.emplace_back(set);
+    if (auto* set = vtkDataSet::SafeDownCast(object)) contents.blocks.emplace_back(set);
   };
   auto* composite = vtkCompositeDataSet::SafeDownCast(data);
   if (!composite) return append(data);
@@ -79,8 +75,10 @@ FileContents read_file(const std::string& path, const std::string& grid_file, co
       case Format::kVtu:
       case Format::kVts:
       case Format::kVtr:
+      case Format::kVti:
         return read_xml(path, time);
       case Format::kParallelXml:
+      case Format::kParallelGrid:
       case Format::kMultiBlock:
       case Format::kPvd:
         return read_collection(path, time);
@@ -100,13 +98,26 @@ FileContents read_file(const std::string& path, const std::string& grid_file, co
         return read_ucd(path);
       case Format::kPlot3d:
         return read_plot3d(path, grid_file);
-      case Format::kRegularGrid:
+      case Format::kNrrd:
+        return read_nrrd(path, time);
+      case Format::kMetaImage:
+        return read_meta_image(path, time);
+      case Format::kNifti:
+        return read_nifti(path, time);
+      case Format::kSlc:
+        return read_slc(path);
+      case Format::kDicom:
+        return read_dicom(path);
+      case Format::kTiff:
+        return read_tiff(path);
+      case Format::kMrc:
+        return read_mrc(path);
+      case Format::kRaw:  // Read without this process; no collection names one.
+      case Format::kHierarchy:
       case Format::kSurface:
         break;
     }
-    FileContents contents;  // A part of a collection that is not drawn.
-    if (format == Format::kRegularGrid) contents.regular_grids = 1;
-    return contents;
+    return {};  // A part of a collection that is not drawn.
   };
   FileContents contents = read();
   contents.format = format_name(format);

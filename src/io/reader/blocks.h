@@ -23,7 +23,8 @@ struct FileContents {
   std::size_t time_index = 0;
   std::string format;
   std::vector<std::string> notes;
-  std::uint64_t regular_grids = 0;  ///< blocks that were left out because they are regular grids
+  /// Where the slices of an image lie along k, from its origin on, strictly ascending; empty: evenly, as it says.
+  std::vector<double> slice_coordinates;
 };
 
 /// Reads a file of any format.
@@ -41,8 +42,9 @@ void update_reader(vtkAlgorithm& reader, const std::string& path, const TimeRequ
 void append_blocks(vtkDataObject* data, FileContents& contents);
 
 // One function a family of formats.
-FileContents read_xml(const std::string& path, const TimeRequest& time);         // VTU, VTS, VTR
-FileContents read_collection(const std::string& path, const TimeRequest& time);  // PVD, VTM, PVTU, PVTS, PVTR
+FileContents read_xml(const std::string& path, const TimeRequest& time);         // VTU, VTS, VTR, VTI
+FileContents read_collection(const std::string& path, const TimeRequest& time);  // PVD, VTM, PVTU, PVTS, PVTI, PVTR
+FileContents read_grid_pieces(const std::string& path);                          // PVTI, PVTR
 FileContents read_legacy(const std::string& path);
 FileContents read_vtkhdf(const std::string& path, const TimeRequest& time);
 FileContents read_exodus(const std::string& path, const TimeRequest& time);
@@ -51,5 +53,12 @@ FileContents read_ensight(const std::string& path, const TimeRequest& time);
 FileContents read_openfoam(const std::string& path, const TimeRequest& time);
 FileContents read_ucd(const std::string& path);
 FileContents read_plot3d(const std::string& path, const std::string& solution_path);
+FileContents read_nrrd(const std::string& path, const TimeRequest& time);
+FileContents read_meta_image(const std::string& path, const TimeRequest& time);
+FileContents read_nifti(const std::string& path, const TimeRequest& time);
+FileContents read_slc(const std::string& path);
+FileContents read_dicom(const std::string& path);
+FileContents read_tiff(const std::string& path);
+FileContents read_mrc(const std::string& path);
 
 }  // namespace tetravox::io

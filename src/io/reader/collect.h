@@ -1,6 +1,6 @@
 #pragma once
 
-/// Blocks of VTK -> one mesh in shared memory.
+/// Blocks of VTK -> one mesh, or one regular grid, in shared memory.
 
 #include "src/io/reader/blocks.h"
 #include "src/io/reader_protocol.h"
@@ -40,8 +40,8 @@ struct Block {
   vtkSmartPointer<vtkDataSet> data;
   std::optional<UnstructuredCells> cells;  ///< empty: a lattice of hexahedra of `dimensions`
   std::array<std::int64_t, 3> dimensions{};
-  std::vector<std::uint8_t> is_drawn;       ///< [cells of the block]
-  std::vector<std::uint8_t> is_point_used;  ///< [points of the block]
+  std::vector<std::uint8_t> is_drawn;       ///< [cells of the block]; empty in a grid, where all are
+  std::vector<std::uint8_t> is_point_used;  ///< [points of the block]; empty in a grid
   std::uint64_t point_count = 0;
   std::uint64_t cell_count = 0;  ///< drawn
   std::uint64_t connectivity_count = 0;
@@ -49,7 +49,7 @@ struct Block {
   std::uint64_t first_cell = 0;
   std::uint64_t first_connectivity = 0;
 
-  std::size_t all_cells() const { return is_drawn.size(); }
+  std::uint64_t all_cells = 0;  ///< of the block
 };
 
 /// Examines the blocks: which cells are drawn, what is left out and why, counts by type, bounds, ids in range. Fills in
@@ -72,10 +72,46 @@ void write_block(const Block& block, const MeshArrays& mesh);
 std::vector<ArrayInfo> examine_arrays(const std::vector<Block>& blocks, const std::string& file,
                                       std::vector<std::string>& notes);
 
+/// The block's array that `info` describes; null where the block has none.
+vtkDataArray* find_array(const Block& block, const ArrayInfo& info);
+
 /// Writes a component (or the magnitude) of an array as doubles, [points] or [drawn cells] of all blocks.
 void write_scalars(const std::vector<Block>& blocks, const ArrayInfo& array, int component, double* scalars);
 
 /// One component of tuples [first, first + count) as doubles; `kMagnitude` for the length.
 void convert_values(vtkDataArray& array, int component, std::size_t first, std::size_t count, double* values);
+
+/// A block that is handed over as a regular grid.
+struct GridBlock {
+  Block block;
+  GridShape shape;
+};
+
+/// The contents as a grid: a single block, an image or a rectilinear grid with strictly ascending or descending axes,
+/// without a ghost or hidden cell or point. Empty where they are to be taken as cells of a mesh. Notes tell of what had
+/// to be mended.
+std::optional<GridBlock> find_grid(const FileContents& contents, std::vector<std::string>& notes);
+
+/// Whether the grid has less than two points along an axis, and so no volume.
+bool is_flat(const GridShape& shape);
+
+/// Fills in everything of `info` but the arrays.
+/// @throws Error (kBadFile) for a grid whose bounds are not finite.
+void examine_grid(const GridBlock& grid, const std::string& file, DatasetInfo& info);
+
+/// How the values of an array are handed over.
+struct GridValues {
+  ScalarType type = ScalarType::kFloat64;
+  int components = 1;
+  int component = 0;    ///< to draw, among these
+  bool is_raw = false;  ///< as they stand in `array`; otherwise the one component, or magnitude, that is asked for
+  std::uint64_t bytes = 0;
+};
+
+/// Arrays of up to four components stay what they are; of others one component, or the magnitude, is made.
+GridValues plan_grid_values(vtkDataArray& array, int component);
+
+/// Writes [tuples][components] values and gives the array's memory back while it does: the array is of no use after.
+void move_grid_values(vtkDataArray& array, const GridValues& plan, int component, std::byte* values);
 
 }  // namespace tetravox::io

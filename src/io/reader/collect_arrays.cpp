@@ -13,6 +13,7 @@
 #include <limits>
 #include <mutex>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace tetravox::io {
@@ -55,18 +56,6 @@ bool is_marker(vtkDataArray& array) {
   return array.GetName() && std::strcmp(array.GetName(), vtkDataSetAttributes::GhostArrayName()) == 0;
 }
 
-/// The block's array that `info` describes; null where the block has none.
-vtkDataArray* find_array(const Block& block, const ArrayInfo& info) {
-  vtkDataSetAttributes& attributes = attributes_of(block, info.association);
-  for (int i = 0; i < attributes.GetNumberOfArrays(); ++i) {
-    vtkDataArray* array = attributes.GetArray(i);
-    if (array && !is_marker(*array) && array->GetNumberOfComponents() == info.components &&
-        shown_name(*array) == info.name)
-      return array;
-  }
-  return nullptr;
-}
-
 /// Ranges and missing values of part of an array.
 struct Statistics {
   std::vector<ValueRange> components;
@@ -97,12 +86,30 @@ double value_as_double(T value) {
   return static_cast<double>(value);
 }
 
+/// Which tuples count; an empty mask: all.
+bool counts(std::span<const std::uint8_t> mask, std::size_t tuple) { return mask.empty() || mask[tuple]; }
+
+/// Adds whole numbers [first, last), which are all finite.
+template <class T>
+void add_whole_numbers(const T* values, std::size_t first, std::size_t last, Statistics& statistics) {
+  T least = values[first], most = values[first];
+  for (std::size_t i = first + 1; i < last; ++i) {
+    least = std::min(least, values[i]);
+    most = std::max(most, values[i]);
+  }
+  const ValueRange range{value_as_double(least), value_as_double(most)};
+  Statistics::add(statistics.components[0], range);
+  Statistics::add(statistics.magnitude, range);
+}
+
 /// Adds tuples [first, last) of plain memory to `statistics`, where `mask` says so.
 template <class T>
 void add_tuples(const T* values, std::size_t components, std::span<const std::uint8_t> mask, std::size_t first,
                 std::size_t last, Statistics& statistics) {
+  if constexpr (std::is_integral_v<T>)
+    if (mask.empty() && components == 1 && first < last) return add_whole_numbers(values, first, last, statistics);
   for (std::size_t i = first; i < last; ++i) {
-    if (!mask[i]) continue;
+    if (!counts(mask, i)) continue;
     const T* tuple = values + i * components;
     double square_sum = 0.0;
     bool is_finite = true;
@@ -128,7 +135,7 @@ void add_tuples_slowly(vtkDataArray& array, std::span<const std::uint8_t> mask, 
   std::vector<double> tuple(components);
   const std::uint8_t one = 1;
   for (std::size_t i = first; i < last; ++i) {
-    if (!mask[i]) continue;
+    if (!counts(mask, i)) continue;
     for (std::size_t c = 0; c < components; ++c)
       tuple[c] = array.GetComponent(static_cast<vtkIdType>(i), static_cast<int>(c));
     add_tuples(tuple.data(), components, {&one, 1}, 0, 1, statistics);
@@ -150,12 +157,13 @@ void add_part(vtkDataArray& array, std::span<const std::uint8_t> mask, std::size
 
 void add_array(vtkDataArray& array, std::span<const std::uint8_t> mask, Statistics& statistics) {
   std::mutex mutex;
-  support::parallel_chunks(mask.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    Statistics part(array.GetNumberOfComponents());
-    add_part(array, mask, begin, end, part);
-    const std::lock_guard lock(mutex);
-    statistics.merge(part);
-  });
+  support::parallel_chunks(static_cast<std::size_t>(array.GetNumberOfTuples()), kGrain,
+                           [&](std::size_t begin, std::size_t end) {
+                             Statistics part(array.GetNumberOfComponents());
+                             add_part(array, mask, begin, end, part);
+                             const std::lock_guard lock(mutex);
+                             statistics.merge(part);
+                           });
 }
 
 ValueRange finite_range(const ValueRange& range) { return range.min <= range.max ? range : ValueRange{}; }
@@ -177,7 +185,7 @@ void measure_array(const std::vector<Block>& blocks, ArrayInfo& info) {
 }
 
 void check_length(vtkDataArray& array, const Block& block, Association association, const std::string& file) {
-  const std::uint64_t tuples = association == Association::kPoint ? block.point_count : block.all_cells();
+  const std::uint64_t tuples = association == Association::kPoint ? block.point_count : block.all_cells;
   if (static_cast<std::uint64_t>(array.GetNumberOfTuples()) != tuples)
     fail_file(file, "array '" + shown_name(array) + "' has " + std::to_string(array.GetNumberOfTuples()) +
                         " values instead of " + std::to_string(tuples));
@@ -223,6 +231,17 @@ void convert_plain(const T* tuples, std::size_t components, int component, std::
 
 }  // namespace
 
+vtkDataArray* find_array(const Block& block, const ArrayInfo& info) {
+  vtkDataSetAttributes& attributes = attributes_of(block, info.association);
+  for (int i = 0; i < attributes.GetNumberOfArrays(); ++i) {
+    vtkDataArray* array = attributes.GetArray(i);
+    if (array && !is_marker(*array) && array->GetNumberOfComponents() == info.components &&
+        shown_name(*array) == info.name)
+      return array;
+  }
+  return nullptr;
+}
+
 void convert_values(vtkDataArray& array, int component, std::size_t first, std::size_t count, double* values) {
   const auto components = static_cast<std::size_t>(array.GetNumberOfComponents());
   if (array.HasStandardMemoryLayout() && array.GetDataType() != VTK_BIT) {
@@ -263,13 +282,13 @@ void write_scalars(const std::vector<Block>& blocks, const ArrayInfo& info, int 
     double* out = scalars + (is_point ? block.first_point : block.first_cell);
     if (!array) {
       std::fill_n(out, is_point ? block.point_count : block.cell_count, std::numeric_limits<double>::quiet_NaN());
-    } else if (is_point || block.cell_count == block.all_cells()) {
-      support::parallel_chunks(is_point ? block.point_count : block.all_cells(), kGrain,
+    } else if (is_point || block.cell_count == block.all_cells) {
+      support::parallel_chunks(is_point ? block.point_count : block.all_cells, kGrain,
                                [&](std::size_t begin, std::size_t end) {
                                  convert_values(*array, component, begin, end - begin, out + begin);
                                });
     } else {
-      for (std::size_t cell = 0; cell < block.all_cells(); ++cell)
+      for (std::size_t cell = 0; cell < block.all_cells; ++cell)
         if (block.is_drawn[cell]) convert_values(*array, component, cell, 1, out++);
     }
   }

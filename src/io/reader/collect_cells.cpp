@@ -8,6 +8,7 @@
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkIdTypeArray.h>
+#include <vtkImageData.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkRectilinearGrid.h>
@@ -134,7 +135,8 @@ Block make_block(vtkDataSet& data, const std::string& place) {
   Block block;
   block.data = &data;
   block.point_count = static_cast<std::uint64_t>(data.GetNumberOfPoints());
-  block.is_drawn.assign(static_cast<std::size_t>(data.GetNumberOfCells()), 0);
+  block.all_cells = static_cast<std::uint64_t>(data.GetNumberOfCells());
+  block.is_drawn.assign(block.all_cells, 0);
   block.is_point_used.assign(block.point_count, 0);
   int dimensions[3] = {0, 0, 0};
   if (auto* grid = vtkUnstructuredGrid::SafeDownCast(&data)) {
@@ -145,6 +147,8 @@ Block make_block(vtkDataSet& data, const std::string& place) {
     structured->GetDimensions(dimensions);
   else if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(&data))
     rectilinear->GetDimensions(dimensions);
+  else if (auto* image = vtkImageData::SafeDownCast(&data))
+    image->GetDimensions(dimensions);
   std::copy(dimensions, dimensions + 3, block.dimensions.begin());
   const std::int64_t points = block.dimensions[0] * block.dimensions[1] * block.dimensions[2];
   if (points > 0 && static_cast<std::uint64_t>(points) != block.point_count)
@@ -230,7 +234,7 @@ using TypeCounts = std::map<CellType, std::uint64_t>;
 
 void examine_cells(Block& block, const std::string& place, LeftOut& left_out, TypeCounts& counts) {
   const GhostMarks marks = find_ghost_marks(*block.data);
-  for (std::size_t cell = 0; cell < block.all_cells(); ++cell) {
+  for (std::size_t cell = 0; cell < block.all_cells; ++cell) {
     Fate fate = fate_of_cell(block, marks, cell, place);
     if (fate == Fate::kDrawn && !take_points(block, marks, cell, place)) fate = Fate::kBlanked;
     switch (fate) {
@@ -303,6 +307,8 @@ void write_lattice_points(vtkRectilinearGrid& grid, double* points) {
 void write_points(const Block& block, double* points) {
   if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(block.data)) {
     write_lattice_points(*rectilinear, points);
+  } else if (vtkImageData::SafeDownCast(block.data)) {
+    for (std::size_t i = 0; i < block.point_count; ++i) block.data->GetPoint(static_cast<vtkIdType>(i), points + 3 * i);
   } else {
     vtkDataArray& array = *static_cast<vtkPointSet*>(block.data.Get())->GetPoints()->GetData();
     std::vector<double> axis_values(std::min<std::size_t>(block.point_count, kGrain));
@@ -373,7 +379,7 @@ void write_block(const Block& block, const MeshArrays& mesh) {
   write_points(block, mesh.points + 3 * block.first_point);
   std::uint32_t* out = mesh.connectivity + block.first_connectivity;
   std::uint64_t index = block.first_cell;
-  for (std::size_t cell = 0; cell < block.all_cells(); ++cell) {
+  for (std::size_t cell = 0; cell < block.all_cells; ++cell) {
     if (!block.is_drawn[cell]) continue;
     mesh.cell_types[index] = block.cells ? static_cast<CellType>(block.cells->types[cell]) : CellType::kHexahedron;
     out = write_cell(block, cell, out);

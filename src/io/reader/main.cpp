@@ -1,10 +1,13 @@
-/// tetravox-reader: reads one file with VTK and hands its mesh over in shared memory. Started by the library, which
-/// survives whatever happens in here.
+/// tetravox-reader: reads one file with VTK and hands its mesh or grid over in shared memory. Started by the library,
+/// which survives whatever happens in here.
 
 #include "src/io/reader/collect.h"
+#include "src/io/reader/hand_over.h"
 #include "src/io/reader/status.h"
 
-#include <sys/mman.h>
+#include <vtkImageData.h>
+#include <vtkRectilinearGrid.h>
+
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -12,8 +15,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <span>
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -26,20 +27,6 @@ extern "C" const char* __tsan_default_options() { return "max_allocation_size_mb
 namespace tetravox::io {
 
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kLimitsMemory = false;  // Sanitizers map terabytes of shadow memory.
-#else
-constexpr bool kLimitsMemory = true;
-#endif
-
-/// Bytes of private memory that this process holds.
-std::uint64_t private_memory() {
-  std::ifstream in("/proc/self/statm");
-  std::uint64_t total = 0, resident = 0, shared = 0;
-  in >> total >> resident >> shared;
-  return (resident - std::min(shared, resident)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
 
 /// Ends this process with its parent, without a core dump, and keeps it within its memory.
 void limit_process(const ReaderRequest& request) {
@@ -57,97 +44,34 @@ void limit_process(const ReaderRequest& request) {
   }
 }
 
-/// Places sections one after the other.
-class Layout {
- public:
-  Section place(std::uint64_t bytes) {
-    const Section section{end_, bytes};
-    end_ += (bytes + 63) / 64 * 64;
-    return section;
-  }
-  std::uint64_t total() const { return end_; }
-
- private:
-  std::uint64_t end_ = (sizeof(SharedHeader) + 63) / 64 * 64;
-};
-
-SharedHeader make_header(const std::vector<Block>& blocks, const Description& description, std::size_t text_bytes,
-                         bool has_mesh) {
-  const DatasetInfo& info = description.info;
-  const bool is_point = description.association == Association::kPoint;
-  std::uint64_t connectivity = 0;
-  for (const Block& block : blocks) connectivity += block.connectivity_count;
-  Layout layout;
-  SharedHeader header;
-  header.magic = kSharedMagic;
-  header.description = layout.place(text_bytes);
-  if (has_mesh) {
-    header.points = layout.place(info.point_count * 3 * sizeof(double));
-    header.cell_types = layout.place(info.cell_count * sizeof(CellType));
-    header.cell_offsets = layout.place((info.cell_count + 1) * sizeof(std::uint64_t));
-    header.connectivity = layout.place(connectivity * sizeof(std::uint32_t));
-    header.scalars = layout.place((is_point ? info.point_count : info.cell_count) * sizeof(double));
-  }
-  header.total_bytes = layout.total();
-  return header;
-}
-
-/// Name of the array that stands in where a file has none; no file's own array can bear it, since then there is one.
-constexpr const char* kUniformArray = "(uniform)";
-
-/// The memory file at its full size.
-std::byte* map_memory(std::uint64_t bytes, const ReaderRequest& request) {
-  const std::uint64_t limit = request.options.memory_limit;
-  const bool is_too_much = kLimitsMemory && limit > 0 && bytes + private_memory() > limit;
-  if (is_too_much || ftruncate(kDataDescriptor, static_cast<off_t>(bytes)) != 0)
-    throw Error(ErrorCode::kOutOfMemory, describe_out_of_memory(request.file, limit));
-  void* address = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, kDataDescriptor, 0);
-  if (address == MAP_FAILED) throw Error(ErrorCode::kOutOfMemory, describe_out_of_memory(request.file, limit));
-  return static_cast<std::byte*>(address);
-}
-
-/// Writes the memory file; without `array` only the description.
-void hand_over(const std::vector<Block>& blocks, const Description& description, const ArrayInfo* array,
-               const ReaderRequest& request) {
-  const std::vector<std::byte> text = encode_description(description);
-  const SharedHeader header = make_header(blocks, description, text.size(), array != nullptr);
-  std::byte* memory = map_memory(header.total_bytes, request);
-  std::memcpy(memory, &header, sizeof header);
-  std::memcpy(memory + header.description.offset, text.data(), text.size());
-  if (!array) return;
-  const MeshArrays mesh{reinterpret_cast<double*>(memory + header.points.offset),
-                        reinterpret_cast<CellType*>(memory + header.cell_types.offset),
-                        reinterpret_cast<std::uint64_t*>(memory + header.cell_offsets.offset),
-                        reinterpret_cast<std::uint32_t*>(memory + header.connectivity.offset)};
-  for (const Block& block : blocks) write_block(block, mesh);
-  double* scalars = reinterpret_cast<double*>(memory + header.scalars.offset);
-  if (array->name == kUniformArray)
-    std::fill_n(scalars, description.info.cell_count, 1.0);
-  else
-    write_scalars(blocks, *array, description.component, scalars);
-}
-
-/// A mesh without arrays is drawn as a homogeneous body: its shape is still worth seeing. Not so an OpenFOAM case,
+/// A dataset without arrays is drawn as a homogeneous body: its shape is still worth seeing. Not so an OpenFOAM case,
 /// whose fields are files of their own: VTK passes over damaged ones without a word.
 void add_uniform_array(DatasetInfo& info) {
   if (!info.arrays.empty() || info.cell_count == 0 || info.format.starts_with("OpenFOAM")) return;
   ArrayInfo uniform;
   uniform.name = kUniformArray;
   uniform.association = Association::kCell;
-  uniform.type = "float64";
+  uniform.type = info.grid ? "uint8" : "float64";
   uniform.magnitude_range = {1.0, 1.0};
   uniform.component_ranges = {uniform.magnitude_range};
   info.arrays.push_back(uniform);
   info.notes.push_back("no point or cell arrays: drawn as a homogeneous body");
 }
 
+bool is_single_slice(const FileContents& contents) {
+  return contents.blocks.size() == 1 && (vtkImageData::SafeDownCast(contents.blocks.front()) ||
+                                         vtkRectilinearGrid::SafeDownCast(contents.blocks.front()));
+}
+
 /// The array to draw; throws where there is no cell or no array.
 const ArrayInfo& choose_field(const ReaderRequest& request, const FileContents& contents, Description& description) {
   const DatasetInfo& info = description.info;
   if (info.cell_count == 0) {
-    if (contents.regular_grids > 0)
-      throw Error(ErrorCode::kUnsupported,
-                  "'" + request.file + "' holds regular grids only, and regular grids are not drawn yet");
+    if (is_single_slice(contents))
+      throw Error(ErrorCode::kNothingToDraw,
+                  "'" + request.file +
+                      "' holds a single slice, which has no volume: a grid needs two points or more along each axis; "
+                      "of a series of slices, name the directory");
     if (info.left_out.unsupported > 0)
       throw Error(ErrorCode::kUnsupported, "'" + request.file + "': its " + std::to_string(info.left_out.unsupported) +
                                                " volume cells are of types that are not drawn (convex point sets, "
@@ -165,9 +89,7 @@ const ArrayInfo& choose_field(const ReaderRequest& request, const FileContents& 
 }
 
 void add_notes(const FileContents& contents, DatasetInfo& info) {
-  info.notes = contents.notes;
-  if (contents.regular_grids > 0)
-    info.notes.push_back(std::to_string(contents.regular_grids) + " blocks are regular grids, which are not drawn yet");
+  info.notes.insert(info.notes.end(), contents.notes.begin(), contents.notes.end());
   if (info.left_out.unsupported > 0)
     info.notes.push_back(std::to_string(info.left_out.unsupported) +
                          " volume cells are of types that are not drawn (convex point sets, Lagrange, Bezier)");
@@ -186,13 +108,25 @@ void run(const ReaderRequest& request) {
   info.format = contents.format;
   info.times = contents.times;
   info.time_index = contents.time_index;
-  const std::vector<Block> blocks = examine_blocks(contents, request.file, info);
+  const std::optional<GridBlock> grid = find_grid(contents, info.notes);
+  std::vector<Block> blocks;
+  if (grid) {
+    examine_grid(*grid, request.file, info);
+    if (info.grid) blocks.push_back(grid->block);
+  } else {
+    blocks = examine_blocks(contents, request.file, info);
+  }
   add_notes(contents, info);
   info.arrays = examine_arrays(blocks, request.file, info.notes);
   add_uniform_array(info);
   send_progress(0.93);
   const ArrayInfo* array = request.options.only_info ? nullptr : &choose_field(request, contents, description);
-  hand_over(blocks, description, array, request);
+  if (array && info.grid)
+    hand_over_grid(blocks.front(), description, *array, request);
+  else if (array)
+    hand_over_mesh(blocks, description, *array, request);
+  else
+    hand_over_info(description, request);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Legacy VTK files. VTK's readers are silent about some that end too early, so the counts of the header are compared
 // with what came.
 
+#include "src/io/formats.h"
 #include "src/io/reader/blocks.h"
 #include "src/io/reader/file_checks.h"
 
@@ -10,6 +11,7 @@
 #include <vtkRectilinearGridReader.h>
 #include <vtkStructuredGrid.h>
 #include <vtkStructuredGridReader.h>
+#include <vtkStructuredPointsReader.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridReader.h>
 
@@ -40,29 +42,27 @@ std::optional<long long> find_count(std::string_view text, std::string keyword) 
   return std::nullopt;
 }
 
-/// The word after DATASET, in lower case, which follows the three lines of the header.
-std::string dataset_type(const std::string& text, const std::string& path) {
-  std::istringstream in(text.substr(0, 4096));
-  std::string line, keyword, type;
-  for (int i = 0; i < 3; ++i) std::getline(in, line);
-  in >> keyword >> type;
-  for (std::string* word : {&keyword, &type})
-    for (char& c : *word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (keyword != "dataset") fail_file(path, "no DATASET after its header");
-  return type;
+/// The word after DATASET, in lower case, which follows the header: two lines, and ASCII or BINARY.
+std::string dataset_type(std::string_view text, const std::string& path) {
+  std::istringstream in(std::string(text.substr(0, 4096)));
+  std::string line, encoding, keyword, type;
+  for (int i = 0; i < 2; ++i) std::getline(in, line);
+  in >> encoding >> keyword >> type;
+  if (lower_case(keyword) != "dataset") fail_file(path, "no DATASET after its header");
+  return lower_case(type);
 }
 
 /// A section of data that has begun holds something, or other data follow it.
-void require_section(const std::string& text, const std::string& path) {
+void require_section(std::string_view text, const std::string& path) {
   const std::size_t last = text.find_last_not_of(" \t\r\n");
   const std::size_t line = last == std::string::npos ? last : text.rfind('\n', last);
   if (line == std::string::npos) return;
-  const std::string_view words = std::string_view(text).substr(line + 1);
+  const std::string_view words = text.substr(line + 1);
   for (const char* keyword : {"POINT_DATA ", "CELL_DATA ", "point_data ", "cell_data "})
     if (words.starts_with(keyword)) fail_file(path, "it ends where its data should begin");
 }
 
-void require_count(const std::string& text, const char* keyword, vtkIdType count, const std::string& path) {
+void require_count(std::string_view text, const char* keyword, vtkIdType count, const std::string& path) {
   const auto promised = find_count(text, keyword);
   if (promised && *promised != count)
     fail_file(path, std::string(keyword) + " promises " + std::to_string(*promised) + ", and " + std::to_string(count) +
@@ -91,7 +91,8 @@ FileContents read_with(const std::string& path) {
 }  // namespace
 
 FileContents read_legacy(const std::string& path) {
-  const std::string text = read_whole_file(path);
+  const MappedFile file(path);
+  const std::string_view text = file.text();
   const std::string type = dataset_type(text, path);
   require_section(text, path);
   FileContents contents;
@@ -101,9 +102,12 @@ FileContents read_legacy(const std::string& path) {
     contents = read_with<vtkStructuredGridReader>(path);
   else if (type == "rectilinear_grid")
     contents = read_with<vtkRectilinearGridReader>(path);
+  else if (type == "structured_points")
+    contents = read_with<vtkStructuredPointsReader>(path);
   else
-    throw Error(ErrorCode::kUnsupported,
-                "'" + path + "' holds '" + type + "': give an unstructured, structured or rectilinear grid");
+    throw Error(ErrorCode::kUnsupported, "'" + path + "' holds '" + type +
+                                             "': give structured points or an unstructured, structured or rectilinear "
+                                             "grid");
   if (contents.blocks.empty()) fail_file(path, "VTK made nothing of it");
   vtkDataSet& data = *contents.blocks.front();
   if (type == "unstructured_grid") {

@@ -14,6 +14,7 @@
 #include <vtkStructuredGrid.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLDataElement.h>
+#include <vtkXMLImageDataReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -59,7 +60,7 @@ FileContents read_any(const std::string& path, const TimeRequest& time, int dept
 void append_contents(FileContents&& part, FileContents& whole) {
   std::move(part.blocks.begin(), part.blocks.end(), std::back_inserter(whole.blocks));
   std::move(part.notes.begin(), part.notes.end(), std::back_inserter(whole.notes));
-  whole.regular_grids += part.regular_grids;
+  if (whole.slice_coordinates.empty()) whole.slice_coordinates = std::move(part.slice_coordinates);
 }
 
 /// Reads the files that a collection lists, each at its first time step.
@@ -113,6 +114,8 @@ FileContents read_any(const std::string& path, const TimeRequest& time, int dept
     case Format::kMultiBlock:
     case Format::kParallelXml:
       return read_list(path, depth);
+    case Format::kParallelGrid:
+      return read_grid_pieces(path);
     default:
       return read_file(path, {}, time);
   }
@@ -127,6 +130,8 @@ FileContents read_xml(const std::string& path, const TimeRequest& time) {
       return read_with<vtkXMLStructuredGridReader>(path, time);
     case Format::kVtr:
       return read_with<vtkXMLRectilinearGridReader>(path, time);
+    case Format::kVti:
+      return read_with<vtkXMLImageDataReader>(path, time);
     default:
       return read_vtu(path, time);
   }

@@ -1,6 +1,7 @@
 #include "tests/unit/io/sample_files.h"
 
-#include <hdf5.h>
+#include "tests/unit/io/hdf5_writing.h"
+
 #include <unistd.h>
 
 #include <array>
@@ -128,18 +129,6 @@ void write_vts(const fs::path& directory) {
                  points_text() + "</DataArray></Points>\n</Piece></StructuredGrid></VTKFile>\n");
 }
 
-void write_vtr(const fs::path& directory) {
-  const auto axis = [](const char* name, const char* values) {
-    return "<DataArray type=\"Float32\" Name=\"" + std::string(name) + "\" format=\"ascii\">" + values +
-           "</DataArray>\n";
-  };
-  write_text(directory / "mesh.vtr",
-             std::string("<VTKFile type=\"RectilinearGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-                         "<RectilinearGrid WholeExtent=\"0 2 0 1 0 1\">\n<Piece Extent=\"0 2 0 1 0 1\">\n") +
-                 kXmlData + "<Coordinates>" + axis("x", "0 1 2") + axis("y", "0 1") + axis("z", "0 1") +
-                 "</Coordinates>\n</Piece></RectilinearGrid></VTKFile>\n");
-}
-
 void write_pvtu(const fs::path& directory) {
   // Each piece holds both cubes and owns one; the other is a ghost.
   const auto ghosts = [](const char* values) {
@@ -213,13 +202,6 @@ void write_legacy_structured(const fs::path& directory) {
              "# vtk DataFile Version 3.0\ntwo cubes\nASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS 3 2 2\n"
              "POINTS 12 double\n" +
                  points_text() + legacy_data());
-}
-
-void write_legacy_rectilinear(const fs::path& directory) {
-  write_text(directory / "mesh.vtk",
-             "# vtk DataFile Version 3.0\ntwo cubes\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 2 2\n"
-             "X_COORDINATES 3 float\n0 1 2\nY_COORDINATES 2 float\n0 1\nZ_COORDINATES 2 float\n0 1\n" +
-                 legacy_data());
 }
 
 void write_ucd_text(const fs::path& directory) {
@@ -359,36 +341,11 @@ void write_plot3d_text(const fs::path& directory) {
   write_text(directory / "mesh.q", solution.str());
 }
 
-/// An HDF5 data set of one or two dimensions.
-void write_hdf5(hid_t group, const char* name, hid_t type, std::vector<hsize_t> shape, const void* values) {
-  const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
-  const hid_t set = H5Dcreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
-  H5Dclose(set);
-  H5Sclose(space);
-}
-
-void write_hdf5_attributes(hid_t group) {
-  const hsize_t two = 2;
-  const std::int64_t version[2] = {1, 0};
-  const hid_t pair = H5Screate_simple(1, &two, nullptr), scalar = H5Screate(H5S_SCALAR), text = H5Tcopy(H5T_C_S1);
-  const hid_t first = H5Acreate2(group, "Version", H5T_NATIVE_INT64, pair, H5P_DEFAULT, H5P_DEFAULT);
-  H5Awrite(first, H5T_NATIVE_INT64, version);
-  H5Tset_size(text, 16);
-  const hid_t second = H5Acreate2(group, "Type", text, scalar, H5P_DEFAULT, H5P_DEFAULT);
-  H5Awrite(second, text, "UnstructuredGrid");
-  H5Aclose(first);
-  H5Aclose(second);
-  H5Tclose(text);
-  H5Sclose(pair);
-  H5Sclose(scalar);
-}
-
 void write_vtkhdf(const fs::path& directory) {
   fs::create_directories(directory);
   const hid_t file = H5Fcreate((directory / "mesh.vtkhdf").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hid_t group = H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  write_hdf5_attributes(group);
+  write_vtkhdf_type(group, "UnstructuredGrid");
   const std::int64_t points = 12, cells = 2, ids = 16, offsets[3] = {0, 8, 16};
   std::vector<double> coordinates;
   std::vector<std::int64_t> connectivity;
@@ -472,14 +429,12 @@ const std::vector<Sample>& samples() {
     add("vtu_polyhedra", "mesh.vtu", write_polyhedra);
     add("vtu_appended", "mesh.vtu", write_vtu_appended);
     add("vts", "mesh.vts", write_vts);
-    add("vtr", "mesh.vtr", write_vtr);
     add("pvtu", "mesh.pvtu", write_pvtu, {"mesh.pvtu", "piece_1.vtu"});
     add("vtm", "mesh.vtm", write_vtm, {"mesh.vtm", "parts/b.vtu"})->copies = 2;
     add("pvd", "mesh.pvd", write_pvd, {"mesh.pvd", "b.vtu"})->copies = 2;
     add("legacy_text", "mesh.vtk", write_legacy_text);
     add("legacy_binary", "mesh.vtk", write_legacy_binary);
     add("legacy_structured", "mesh.vtk", write_legacy_structured);
-    add("legacy_rectilinear", "mesh.vtk", write_legacy_rectilinear);
     add("ucd_text", "mesh.inp", write_ucd_text);
     add("ucd_binary", "mesh.inp", write_ucd_binary);
     add("ensight", "mesh.case", write_ensight, {"mesh.case", "mesh.geo", "S.0000", "C.0000"});

@@ -174,7 +174,9 @@ TEST(Refusals, FilesThatCannotBeRead) {
   test::write_text(directory.file("a.vtu"), "hello");
   EXPECT_EQ(error_of(directory.file("a.vtu")).code(), ErrorCode::kBadFile);
   test::write_text(directory.file("a.vti"), "<VTKFile type=\"ImageData\"></VTKFile>");
-  EXPECT_TRUE(contains(error_of(directory.file("a.vti")), "regular grids are not drawn yet"));
+  EXPECT_EQ(error_of(directory.file("a.vti")).code(), ErrorCode::kBadFile);
+  test::write_text(directory.file("a.vthb"), "<VTKFile type=\"vtkOverlappingAMR\"></VTKFile>");
+  EXPECT_TRUE(contains(error_of(directory.file("a.vthb")), "AMR"));
   ASSERT_EQ(mkfifo(directory.file("pipe.vtu").c_str(), 0600), 0);
   EXPECT_EQ(error_of(directory.file("pipe.vtu")).code(), ErrorCode::kBadFile);
   EXPECT_EQ(error_of("builtin:nothing").code(), ErrorCode::kInvalidArgument);
