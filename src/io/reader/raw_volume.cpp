@@ -76,6 +76,16 @@ std::uint64_t read_binary(const RawVolume& volume, std::size_t step, std::span<s
   return step + 1 == steps || volume.files.is_compressed ? stream.count_rest() : 0;
 }
 
+/// Looks whether the files can hold `bytes`. @throws Error that names the header as well as the data file.
+void check_files(const VolumeFiles& files, std::uint64_t bytes, const std::string& path) {
+  try {
+    VolumeStream(files, bytes);
+  } catch (const Error& error) {
+    if (files.paths.front() == path) throw;
+    throw Error(error.code(), "'" + path + "': " + error.what());
+  }
+}
+
 /// Converts the next `count` words of `text`; false where there are fewer, or one is no number of this type.
 template <class T>
 bool convert_words(std::string_view& text, std::size_t count, T* out) {
@@ -198,7 +208,7 @@ FileContents read_raw_volume(const RawVolume& volume, const std::string& path, c
   const std::uint64_t all = count_bytes(
       std::array{volume.points[0], volume.points[1], volume.points[2], volume.components, steps}, volume.type, path);
   // Look at the files before memory is taken for what they may not hold.
-  if (!volume.is_text) VolumeStream(volume.files, all);
+  if (!volume.is_text) check_files(volume.files, all, path);
   const auto image = make_image(volume.points, volume.components, volume.type, volume.array_name, path);
   throw_if_vtk_failed(path);
   const std::span<std::byte> values = image_bytes(*image);

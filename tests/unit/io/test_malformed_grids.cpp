@@ -180,6 +180,7 @@ std::vector<Hostile> hostile_binaries() {
   const std::string sizes = shorts({3, 4, 3, 5});
   const std::string rows = test::dicom_element(0x0028, 0x0010, "US", shorts({3}));
   const std::string stored = test::dicom_element(0x0028, 0x0101, "US", shorts({12}));
+  const std::string frames = test::dicom_element(0x0028, 0x0008, "IS", "5 ");
   const std::string samples = test::dicom_element(0x0028, 0x0002, "US", shorts({1}));
   return {
       {"nifti", "grid.nii", sizes, shorts({3, 4, 3, 6})},
@@ -204,8 +205,8 @@ std::vector<Hostile> hostile_binaries() {
       {"dicom", "a.dcm", "OW" + std::string(2, '\0') + words({24}), "OW" + std::string(2, '\0') + words({22})},
       {"dicom", "a.dcm", "OW" + std::string(2, '\0') + words({24}), "OW" + std::string(2, '\0') + words({26})},
       {"dicom", "a.dcm", "OW" + std::string(2, '\0') + words({24}), "OW" + std::string(2, '\0') + words({-1})},
-      {"dicom_frames", "grid.dcm", "5 ", "6 "},
-      {"dicom_frames", "grid.dcm", "5 ", "-5"},
+      {"dicom_frames", "grid.dcm", frames, test::dicom_element(0x0028, 0x0008, "IS", "6 ")},
+      {"dicom_frames", "grid.dcm", frames, test::dicom_element(0x0028, 0x0008, "IS", "-5")},
       {"dicom_zip", "grid.zip", "DICM", "DICN"},
       {"tiff", "grid.tif", bytes_of(std::uint32_t{257} | 4u << 16) + words({1, 3}),
        bytes_of(std::uint32_t{257} | 4u << 16) + words({1, 4})},
