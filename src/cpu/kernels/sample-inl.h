@@ -34,9 +34,19 @@ class DensityCorners {
     return {channel(&Record::x), channel(&Record::y), channel(&Record::z), channel(&Record::w)};
   }
 
+  /// 0 where a corner is missing.
+  HWY_INLINE Float largest_extinction() const {
+    Float largest = corners_[0].x;
+    for (int i = 1; i < 8; ++i) largest = hn::Max(largest, corners_[i].x);
+    return hn::IfThenElseZero(hn::Eq(largest, largest), largest);
+  }
+
  private:
   Record corners_[8];
 };
+
+/// Optical depth of a piece of a pre-classified cell, and how many pieces there are at most.
+constexpr float kThinDensity = 0.05f, kMostDensityPieces = 64.0f;
 
 /// Adds a piece with the mean densities `mean`.
 HWY_INLINE void composite_densities(const Record& mean, Float length, Accumulated& sum) {
@@ -60,14 +70,26 @@ inline std::uint64_t march_densities(const MarchJob& job, int count) {
       segments += hn::CountTrue(kFloat, rays.alive);
       const DensityCorners corners(brick, rays.cell);
       const Float back = rays.back();
-      const Record a = corners.eval(rays, rays.front), c = corners.eval(rays, back);
-      const Record b = corners.eval(rays, hn::Mul(constant(0.5f), hn::Add(rays.front, back)));
-      const auto mean = [](Float low, Float middle, Float high) {
-        return hn::Mul(multiply_add(constant(4.0f), middle, hn::Add(low, high)), constant(1.0f / 6.0f));
-      };
-      const Float length = hn::IfThenElseZero(rays.alive, hn::Mul(hn::Sub(back, rays.front), rays.world_per_z));
-      composite_densities({mean(a.x, b.x, c.x), mean(a.y, b.y, c.y), mean(a.z, b.z, c.z), mean(a.w, b.w, c.w)}, length,
-                          sum);
+      const Float depth = hn::IfThenElseZero(rays.alive, hn::Sub(back, rays.front));
+      // Pieces so thin that they hardly attenuate themselves.
+      const Float cell_depth = hn::Mul(hn::Mul(depth, rays.world_per_z), corners.largest_extinction());
+      const Float wanted = hn::Ceil(hn::Mul(cell_depth, constant(1.0f / kThinDensity)));
+      const Float pieces = hn::Min(hn::Max(wanted, constant(1.0f)), constant(kMostDensityPieces));
+      const Float share = hn::Div(depth, pieces);
+      Record a = corners.eval(rays, rays.front);
+      for (Float number = constant(0.0f);;) {
+        const Mask busy = hn::Lt(number, pieces);
+        if (hn::AllFalse(kFloat, busy)) break;
+        const auto at = [&](float t) { return multiply_add(hn::Add(number, constant(t)), share, rays.front); };
+        const Record b = corners.eval(rays, at(0.5f)), c = corners.eval(rays, at(1.0f));
+        const auto mean = [](Float low, Float middle, Float high) {
+          return hn::Mul(multiply_add(constant(4.0f), middle, hn::Add(low, high)), constant(1.0f / 6.0f));
+        };
+        composite_densities({mean(a.x, b.x, c.x), mean(a.y, b.y, c.y), mean(a.z, b.z, c.z), mean(a.w, b.w, c.w)},
+                            hn::IfThenElseZero(busy, hn::Mul(share, rays.world_per_z)), sum);
+        a = c;
+        number = hn::Add(number, constant(1.0f));
+      }
       rays.advance(back);
     }
     store_accumulated(sum, job, first, lanes);

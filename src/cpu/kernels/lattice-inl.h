@@ -1,0 +1,181 @@
+// Rays in the lattice of cells of a brick.
+
+#if defined(TETRAVOX_CPU_LATTICE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETRAVOX_CPU_LATTICE_INL
+#undef TETRAVOX_CPU_LATTICE_INL
+#else
+#define TETRAVOX_CPU_LATTICE_INL
+#endif
+
+#include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/vector_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetravox::cpu {
+namespace HWY_NAMESPACE {
+
+/// A ray that moves less than this along an axis, in cells for one unit of depth, is parallel to the lattice planes.
+constexpr float kParallel = 1e-6f;
+constexpr float kNever = 1e30f;
+
+/// A vector of rays in a lattice of cells. Lattice coordinates count the cells from the brick's lower corner.
+///
+/// Along each axis a ray meets the planes between cells at equal steps (Amanatides and Woo 1987); from the depth at
+/// which it will meet the next one follows where in the cell it is.
+struct LatticeRays {
+  Float next[3];   ///< depth at the next plane of each axis
+  Float step[3];   ///< depth from plane to plane
+  Float start[3];  ///< place in the cell = start + (next - depth) * rate
+  Float rate[3];
+  Int stride[3];  ///< from cell to cell, in records
+  Int cell;       ///< record at hand
+  Float front, leave, world_per_z;
+  Mask alive;
+
+  /// Records are those of cells, or of nodes: `nodes_more` along each axis.
+  LatticeRays(const MarchRays& rays, const MarchBrick& brick, int first, int count, int nodes_more = 0)
+      : brick_(brick) {
+    const Int ray = hn::Load(kInt, rays.ray + first);
+    front = hn::Load(kFloat, rays.z_enter + first);
+    leave = hn::Load(kFloat, rays.z_leave + first);
+    alive = hn::FirstN(kFloat, static_cast<std::size_t>(count));
+    world_per_z = hn::GatherIndex(kFloat, rays.world_per_z, ray);
+    cell = hn::Zero(kInt);
+    std::int32_t axis_stride = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float n = static_cast<float>(brick.cells[axis]);
+      const Float cells_per_unit = constant(n / (brick.upper[axis] - brick.lower[axis]));
+      const Float origin = hn::Mul(
+          hn::Sub(hn::GatherIndex(kFloat, rays.origin[axis], ray), constant(brick.lower[axis])), cells_per_unit);
+      const Float direction = hn::Mul(hn::GatherIndex(kFloat, rays.direction[axis], ray), cells_per_unit);
+      const Mask parallel = hn::Lt(hn::Abs(direction), hn::Mul(constant(kParallel), cells_per_unit));
+      const Mask rising = hn::Ge(direction, constant(0.0f));
+      const Float inverse = hn::Div(constant(1.0f), hn::IfThenElse(parallel, constant(1.0f), direction));
+
+      const Float place = hn::Min(hn::Max(multiply_add(direction, front, origin), constant(0.0f)), constant(n));
+      const Float index = hn::Min(hn::Floor(place), constant(n - 1.0f));
+      const Float plane = hn::IfThenElse(rising, hn::Add(index, constant(1.0f)), index);
+      next[axis] = hn::IfThenElse(parallel, constant(kNever), hn::Mul(hn::Sub(plane, origin), inverse));
+      step[axis] = hn::IfThenElse(parallel, constant(kNever), hn::Abs(inverse));
+      start[axis] =
+          hn::IfThenElse(parallel, hn::Sub(place, index), hn::IfThenElse(rising, constant(1.0f), constant(0.0f)));
+      rate[axis] = hn::IfThenElse(parallel, constant(0.0f), hn::Neg(direction));
+      stride[axis] = hn::IfThenElse(int_mask(rising), hn::Set(kInt, axis_stride), hn::Set(kInt, -axis_stride));
+      cell = hn::Add(cell, hn::Mul(hn::ConvertTo(kInt, index), hn::Set(kInt, axis_stride)));
+      axis_stride *= brick.cells[axis] + nodes_more;
+    }
+    last_cell = hn::Set(kInt, axis_stride - 1);
+    if (brick.is_uneven) start_uneven(rays, ray, nodes_more);
+  }
+
+  /// Depth at which the rays leave their cells.
+  HWY_INLINE Float back() const { return hn::Max(hn::Min(hn::Min(hn::Min(next[0], next[1]), next[2]), leave), front); }
+
+  /// On to the next cell.
+  HWY_INLINE void advance(Float back) {
+    const Mask x = hn::And(hn::Le(next[0], next[1]), hn::Le(next[0], next[2]));
+    const Mask y = hn::AndNot(x, hn::Le(next[1], next[2]));
+    const Mask z = hn::Not(hn::Or(x, y));
+    const Mask crossed[3] = {x, y, z};
+    for (int axis = 0; axis < 3; ++axis) {
+      next[axis] = hn::Add(next[axis], hn::IfThenElseZero(crossed[axis], step[axis]));
+      cell = hn::Add(cell, hn::IfThenElseZero(int_mask(crossed[axis]), stride[axis]));
+    }
+    if (brick_.is_uneven) advance_uneven(crossed);
+    // Rounding may carry a ray a hair beyond the brick: stay in cells that exist.
+    cell = hn::Min(hn::Max(cell, hn::Zero(kInt)), last_cell);
+    alive = hn::And(alive, hn::Lt(back, leave));
+    front = back;
+  }
+
+  /// Place in the cell along an axis, in [0, 1].
+  HWY_INLINE Float place(int axis, Float depth) const {
+    const Float at = multiply_add(hn::Sub(next[axis], depth), rate[axis], start[axis]);
+    return hn::Min(hn::Max(at, constant(0.0f)), constant(1.0f));
+  }
+
+ private:
+  /// Finds the cells again where the planes are not equally spaced.
+  HWY_NOINLINE void start_uneven(const MarchRays& rays, Int ray, int nodes_more) {
+    cell = hn::Zero(kInt);
+    std::int32_t axis_stride = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      origins[axis] = hn::GatherIndex(kFloat, rays.origin[axis], ray);
+      directions[axis] = hn::GatherIndex(kFloat, rays.direction[axis], ray);
+      const Float at = multiply_add(directions[axis], front, origins[axis]);
+      indices[axis] = hn::Zero(kInt);
+      for (int i = 1; i < brick_.cells[axis]; ++i)
+        indices[axis] =
+            hn::Add(indices[axis],
+                    hn::IfThenElseZero(int_mask(hn::Ge(at, constant(brick_.planes[axis][i]))), hn::Set(kInt, 1)));
+      find_plane(axis);
+      const Mask parallel = hn::Lt(hn::Abs(directions[axis]), constant(kParallel));
+      const Float low = hn::GatherIndex(kFloat, brick_.planes[axis], indices[axis]);
+      const Float high = hn::GatherIndex(kFloat, brick_.planes[axis] + 1, indices[axis]);
+      const Float place = hn::Div(hn::Sub(at, low), hn::Sub(high, low));
+      start[axis] = hn::IfThenElse(parallel, place, start[axis]);
+      cell = hn::Add(cell, hn::Mul(indices[axis], hn::Set(kInt, axis_stride)));
+      axis_stride *= brick_.cells[axis] + nodes_more;
+    }
+  }
+
+  HWY_NOINLINE void advance_uneven(const Mask crossed[3]) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Mask rising = hn::Ge(directions[axis], constant(0.0f));
+      const Int sign = hn::IfThenElse(int_mask(rising), hn::Set(kInt, 1), hn::Set(kInt, -1));
+      indices[axis] = hn::Add(indices[axis], hn::IfThenElseZero(int_mask(crossed[axis]), sign));
+      find_plane(axis);
+    }
+  }
+
+  /// The next plane, and how fast the place in the cell changes.
+  HWY_INLINE void find_plane(int axis) {
+    const Mask parallel = hn::Lt(hn::Abs(directions[axis]), constant(kParallel));
+    const Mask rising = hn::Ge(directions[axis], constant(0.0f));
+    const Int last = hn::Set(kInt, brick_.cells[axis] - 1);
+    const Int index = hn::Min(hn::Max(indices[axis], hn::Zero(kInt)), last);
+    const Mask beyond = hn::RebindMask(kFloat, hn::Ne(index, indices[axis]));  // by rounding, at the brick's end
+    const Float low = hn::GatherIndex(kFloat, brick_.planes[axis], index);
+    const Float high = hn::GatherIndex(kFloat, brick_.planes[axis] + 1, index);
+    const Float direction = hn::IfThenElse(parallel, constant(1.0f), directions[axis]);
+    const Float depth = hn::Div(hn::Sub(hn::IfThenElse(rising, high, low), origins[axis]), direction);
+    next[axis] = hn::IfThenElse(hn::Or(parallel, beyond), constant(kNever), depth);
+    rate[axis] = hn::IfThenElse(parallel, constant(0.0f), hn::Neg(hn::Div(direction, hn::Sub(high, low))));
+  }
+
+  const MarchBrick& brick_;
+  Int last_cell;
+  Float origins[3], directions[3];  // of uneven bricks, like `indices`
+  Int indices[3];
+};
+
+/// The corners of the cells that a vector of rays is in.
+struct CellCorners {
+  Record low, high;
+
+  HWY_INLINE CellCorners(const MarchBrick& brick, Int cell) {
+    low = load_records(brick.records, hn::BitCast(kUint, cell));
+    high = load_records(brick.records + 4 * static_cast<std::ptrdiff_t>(brick.cells[0]) * brick.cells[1],
+                        hn::BitCast(kUint, cell));
+  }
+
+  /// The trilinear field at a depth.
+  HWY_INLINE Float eval(const LatticeRays& rays, Float depth) const {
+    const Float x = rays.place(0, depth), y = rays.place(1, depth), z = rays.place(2, depth);
+    const auto mix = [](Float t, Float a, Float b) { return multiply_add(t, hn::Sub(b, a), a); };
+    const auto mix_square = [&](const Record& r) { return mix(y, mix(x, r.x, r.y), mix(x, r.z, r.w)); };
+    return mix(z, mix_square(low), mix_square(high));
+  }
+
+  HWY_INLINE Mask is_missing() const {
+    const auto sum = [](const Record& r) { return hn::Add(hn::Add(r.x, r.y), hn::Add(r.z, r.w)); };
+    const Float all = hn::Add(sum(low), sum(high));
+    return hn::Not(hn::Eq(all, all));  // Ne is false for what is not a number
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetravox::cpu
+HWY_AFTER_NAMESPACE();
+
+#endif
