@@ -182,6 +182,8 @@ Image draw(const RenderOptions& options, Job& job, Talk& talk) {
     watch.lap();
     image = renderer.render(job.completed.camera, settings, &job.statistics.render, talk.line.progress());
     job.statistics.frame_seconds.push_back(watch.lap());
+    // What a new function costs before the next frame, planning included.
+    if (i == 0) job.statistics.transfer_function_seconds += job.statistics.render.plan_seconds;
   }
   job.statistics.frame_bytes = renderer.bytes();
   job.statistics.settings = settings;

@@ -53,6 +53,7 @@ struct RenderSettings {
 
 struct RenderStatistics {
   double seconds = 0.0;
+  double plan_seconds = 0.0;       ///< of these, what is done only after a new transfer function or new settings
   std::uint64_t segments = 0;      ///< ray-cell segments, as walked or marched
   std::uint64_t rays = 0;          ///< rays that met the data
   std::uint64_t stopped_rays = 0;  ///< rays stopped by the bound on steps (damaged meshes only)

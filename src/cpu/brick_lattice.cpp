@@ -33,19 +33,35 @@ void convolve_axis(const Convolution& c, const std::vector<float>& weights, cons
       const float* weight = weights.data() + node % c.parts * c.taps;
       float* to = out.data() + (o * nodes + node) * c.inner;
       for (int tap = 0; tap < c.taps; ++tap) {
+        if (weight[tap] == 0.0f) continue;  // a missing value out of reach is none
         const float* from = in.data() + (o * c.count + node / c.parts + tap) * c.inner;
         for (std::int64_t i = 0; i < c.inner; ++i) to[i] += weight[tap] * from[i];
       }
     }
 }
 
+grid::BrickBox box_of(const PreparedGrid& grid, std::uint32_t brick) {
+  const auto& counts = grid.bricks.counts;
+  return grid::box_of_brick(grid.data.shape,
+                            {brick % counts[0], brick / counts[0] % counts[1], brick / counts[0] / counts[1]});
+}
+
+/// Nodes behind the last one that a ray at the very end of the brick may look at.
+std::size_t nodes_beyond(const MarchBrick& brick) {
+  const auto row = static_cast<std::size_t>(brick.cells[0]) + 1;
+  return row * (static_cast<std::size_t>(brick.cells[1]) + 1) + row + 1;
+}
+
 }  // namespace
+
+void BrickLattice::prefetch(const LatticeField& field, const PreparedGrid& grid, std::uint32_t brick) {
+  const grid::BrickBox box = box_of(grid, brick);
+  field.reader->prefetch({box.first, box.count});
+}
 
 MarchBrick BrickLattice::describe(const PreparedGrid& grid, const grid::GridFrame& frame, std::uint32_t index,
                                   int level) {
-  const auto& counts = grid.bricks.counts;
-  const grid::BrickBox box = grid::box_of_brick(
-      grid.data.shape, {index % counts[0], index / counts[0] % counts[1], index / counts[0] / counts[1]});
+  const grid::BrickBox box = box_of(grid, index);
   MarchBrick brick;
   stride_ = std::int64_t{1} << level;
   for (int axis = 0; axis < 3; ++axis) {
@@ -70,6 +86,11 @@ MarchBrick BrickLattice::describe(const PreparedGrid& grid, const grid::GridFram
 }
 
 void BrickLattice::fill(const LatticeField& field, MarchBrick& brick) {
+  if (field.kernel && field.points) {
+    filter_densities(field, brick);
+    brick.densities = records_.data();
+    return;
+  }
   if (field.kernel) {
     filter_values(field, brick);
   } else {
@@ -85,7 +106,7 @@ void BrickLattice::fill(const LatticeField& field, MarchBrick& brick) {
     fill_densities(*field.points, brick);
     brick.densities = records_.data();
   } else {
-    fill_records(brick);
+    fill_records(*field.kernels, brick);
     brick.records = records_.data();
   }
 }
@@ -117,7 +138,8 @@ void BrickLattice::spread_values(MarchBrick& brick) {
             ((k + 1) / 2 * block_.count[1] + (j + 1) / 2) * block_.count[0] + (i + 1) / 2)]);
 }
 
-void BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick) {
+/// Reads what the kernel reaches from the brick.
+void BrickLattice::read_margin(const LatticeField& field) {
   const int radius = field.kernel->radius();
   for (int axis = 0; axis < 3; ++axis) {
     margin_block_.first[axis] = block_.first[axis] - radius + 1 + field.padding;
@@ -125,24 +147,40 @@ void BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick) {
   }
   margin_.resize(static_cast<std::size_t>(margin_block_.size()));
   field.reader->read(margin_block_, margin_.data());
-  const grid::Block cells = block_;
-  const auto divide = [&](int parts) {
-    for (int axis = 0; axis < 3; ++axis) {
-      block_.count[axis] = cells.count[axis] * parts + 1;
-      brick.cells[axis] = static_cast<std::int32_t>(cells.count[axis] * parts);
-    }
-    if (brick.is_uneven) place_planes(brick, parts);
-    const grid::Block nodes = block_;
-    block_ = cells;
-    convolve(*field.kernel, parts, values_);
-    block_ = nodes;
-  };
-  divide(1);
-  // The distance of a smooth field from its lattice falls with the square of the number of parts.
-  const float rate = measure_bend(values_) * brick.steepness;
-  int parts = 1;
+}
+
+/// Convolves the margin; the cells of the brick are divided into `parts` along each axis.
+void BrickLattice::divide_cells(const LatticeField& field, int parts, MarchBrick& brick) {
+  for (int axis = 0; axis < 3; ++axis) brick.cells[axis] = static_cast<std::int32_t>(block_.count[axis] * parts);
+  if (brick.is_uneven) place_planes(brick, parts);
+  convolve(*field.kernel, parts, values_);
+}
+
+void BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick) {
+  read_margin(field);
+  divide_cells(field, 1, brick);
+  // The distance of a smooth field from its lattice falls with the square of the number of parts. It has the same sign
+  // for many cells on end, so that it adds up where chords' errors do not.
+  constexpr float kAddsUp = 4.0f;
+  const float rate = kAddsUp * measure_bend(brick) * brick.steepness;
+  int parts = brick.has_missing ? 2 : 1;  // in the middle of a cell everything in reach counts
   while (parts < kMostParts && rate > field.allowed_rate * static_cast<float>(parts * parts)) parts *= 2;
-  if (parts > 1) divide(parts);
+  if (parts > 1) divide_cells(field, parts, brick);
+  for (int axis = 0; axis < 3; ++axis) block_.count[axis] = brick.cells[axis] + 1;
+}
+
+/// Pre-classification with a kernel: it is the densities of the values that are filtered, channel by channel.
+void BrickLattice::filter_densities(const LatticeField& field, MarchBrick& brick) {
+  constexpr int kParts = 4;
+  read_margin(field);
+  const std::vector<float> scalars = margin_;
+  for (std::size_t channel = 0; channel < 4; ++channel) {
+    for (std::size_t i = 0; i < scalars.size(); ++i)
+      margin_[i] = optics::eval_densities(*field.points, scalars[i])[channel];
+    divide_cells(field, kParts, brick);
+    if (channel == 0) records_.assign(4 * (values_.size() + nodes_beyond(brick)), 0.0f);
+    for (std::size_t i = 0; i < values_.size(); ++i) records_[4 * i + channel] = values_[i];
+  }
 }
 
 void BrickLattice::convolve(const grid::SeparableKernel& kernel, int parts, std::vector<float>& nodes) {
@@ -156,15 +194,17 @@ void BrickLattice::convolve(const grid::SeparableKernel& kernel, int parts, std:
 }
 
 /// Bound on the distance of a field from the lattice of its nodes, by second differences.
-float BrickLattice::measure_bend(const std::vector<float>& nodes) const {
-  const std::array<std::int64_t, 3> strides{1, block_.count[0], block_.count[0] * block_.count[1]};
+float BrickLattice::measure_bend(const MarchBrick& brick) const {
+  const std::vector<float>& nodes = values_;
+  const std::array<std::int64_t, 3> counts{brick.cells[0] + 1, brick.cells[1] + 1, brick.cells[2] + 1};
+  const std::array<std::int64_t, 3> strides{1, counts[0], counts[0] * counts[1]};
   float bend = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t along = strides[axis], size = block_.size();
+    const std::int64_t along = strides[axis], size = counts[0] * counts[1] * counts[2];
     float largest = 0.0f;
     for (std::int64_t i = along; i + along < size; ++i) {
-      const std::int64_t at = i / along % block_.count[axis];
-      if (at == 0 || at + 1 == block_.count[axis]) continue;
+      const std::int64_t at = i / along % counts[axis];
+      if (at == 0 || at + 1 == counts[axis]) continue;
       largest = std::max(
           largest, std::abs(nodes[static_cast<std::size_t>(i - along)] - 2.0f * nodes[static_cast<std::size_t>(i)] +
                             nodes[static_cast<std::size_t>(i + along)]));
@@ -174,32 +214,31 @@ float BrickLattice::measure_bend(const std::vector<float>& nodes) const {
   return bend;
 }
 
-void BrickLattice::fill_records(const MarchBrick& brick) {
-  const std::int64_t nx = brick.cells[0], ny = brick.cells[1], nz = brick.cells[2];
-  records_.resize(static_cast<std::size_t>(4 * nx * ny * (nz + 1)));
-  const auto row_of = [&](std::int64_t j, std::int64_t k) {
-    const std::int64_t y = std::min(j * stride_, block_.count[1] - 1), z = std::min(k * stride_, block_.count[2] - 1);
-    return values_.data() + (z * block_.count[1] + y) * block_.count[0];
-  };
-  float* record = records_.data();
-  const std::int64_t last = block_.count[0] - 1;
-  for (std::int64_t k = 0; k <= nz; ++k)
-    for (std::int64_t j = 0; j < ny; ++j) {
-      const float *low = row_of(j, k), *high = row_of(j + 1, k);
-      for (std::int64_t i = 0; i < nx; ++i, record += 4) {
-        const std::int64_t x = i * stride_, x_next = std::min(x + stride_, last);
-        record[0] = low[x];
-        record[1] = low[x_next];
-        record[2] = high[x];
-        record[3] = high[x_next];
-      }
-    }
+void BrickLattice::fill_records(const Kernels& kernels, const MarchBrick& brick) {
+  const std::int64_t nx = brick.cells[0] + 1, ny = brick.cells[1] + 1, nz = brick.cells[2] + 1;
+  const std::vector<float>* nodes = &values_;
+  if (stride_ > 1) {
+    margin_.clear();
+    for (std::int64_t k = 0; k < nz; ++k)
+      for (std::int64_t j = 0; j < ny; ++j)
+        for (std::int64_t i = 0; i < nx; ++i) {
+          const auto at = [&](std::int64_t index, int axis) {
+            return std::min(index * stride_, block_.count[axis] - 1);
+          };
+          margin_.push_back(
+              values_[static_cast<std::size_t>((at(k, 2) * block_.count[1] + at(j, 1)) * block_.count[0] + at(i, 0))]);
+        }
+    margin_.resize(margin_.size() + kRecordPadding);
+    nodes = &margin_;
+  } else {
+    values_.resize(values_.size() + kRecordPadding);
+  }
+  records_.resize(4 * (static_cast<std::size_t>((nx - 1) * (ny - 1) * nz) + kRecordPadding));
+  kernels.make_records(nodes->data(), brick.cells, records_.data());
 }
 
 void BrickLattice::fill_densities(const optics::ControlPointTable& points, const MarchBrick& brick) {
-  const std::int64_t row = brick.cells[0] + 1, slice = row * (brick.cells[1] + 1);
-  // A ray at the very end of the brick may look at the nodes beyond.
-  records_.assign(4 * (values_.size() + static_cast<std::size_t>(slice + row + 1)), 0.0f);
+  records_.assign(4 * (values_.size() + nodes_beyond(brick)), 0.0f);
   for (std::size_t i = 0; i < values_.size(); ++i) {
     const std::array<float, 4> densities = optics::eval_densities(points, values_[i]);
     std::copy(densities.begin(), densities.end(), records_.begin() + static_cast<std::ptrdiff_t>(4 * i));

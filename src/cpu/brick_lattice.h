@@ -17,6 +17,7 @@ namespace tetravox::cpu {
 
 /// Where lattices come from, and how they are made: shared by all threads.
 struct LatticeField {
+  const Kernels* kernels = nullptr;
   const grid::BlockReader* reader = nullptr;
   std::int64_t padding = 0;                           ///< places of the reader before the grid's first value
   const grid::SeparableKernel* kernel = nullptr;      ///< null: the values themselves
@@ -32,19 +33,25 @@ class BrickLattice {
   /// Box, cells and flags of a brick whose lattice cells are 2^level cells a side; no values yet.
   MarchBrick describe(const PreparedGrid& grid, const grid::GridFrame& frame, std::uint32_t brick, int level);
 
+  /// Asks for the values of a brick that comes next.
+  static void prefetch(const LatticeField& field, const PreparedGrid& grid, std::uint32_t brick);
+
   /// Reads the values of the brick described last, and points `brick` at them. With a kernel the cells are divided
-  /// until the trilinear lattice is as near to the filtered field as `brick.steepness` asks, at most into 4^3.
+  /// until the trilinear lattice is as near to the filtered field as `brick.steepness` asks, at most into 8^3.
   void fill(const LatticeField& field, MarchBrick& brick);
 
  private:
-  static constexpr int kMostParts = 4;
+  static constexpr int kMostParts = 8;
 
   void place_planes(MarchBrick& brick, int parts);
   void spread_values(MarchBrick& brick);
+  void read_margin(const LatticeField& field);
+  void divide_cells(const LatticeField& field, int parts, MarchBrick& brick);
   void filter_values(const LatticeField& field, MarchBrick& brick);
+  void filter_densities(const LatticeField& field, MarchBrick& brick);
   void convolve(const grid::SeparableKernel& kernel, int parts, std::vector<float>& nodes);
-  float measure_bend(const std::vector<float>& nodes) const;
-  void fill_records(const MarchBrick& brick);
+  float measure_bend(const MarchBrick& brick) const;
+  void fill_records(const Kernels& kernels, const MarchBrick& brick);
   void fill_densities(const optics::ControlPointTable& points, const MarchBrick& brick);
 
   grid::Block block_;  ///< nodes in `values_`

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <span>
 
 namespace tetravox::grid {
 namespace {
@@ -70,15 +72,12 @@ class LanczosKernel final : public SeparableKernel {
   int radius_;
 };
 
-/// Filters one row of `count` values, `stride` apart.
-void prefilter_row(float* values, std::size_t count, std::size_t stride, std::vector<double>& row) {
+/// Filters values in place, the row being mirrored at both ends.
+void prefilter_run(std::span<double> row) {
+  const std::size_t count = row.size();
   if (count < 2) return;
   const double pole = std::sqrt(3.0) - 2.0;
-  row.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float value = values[i * stride];
-    row[i] = value == value ? 6.0 * static_cast<double>(value) : 0.0;
-  }
+  for (double& value : row) value *= 6.0;
   // The first causal coefficient sums the mirrored row: exactly, over its period of 2 (count - 1).
   double sum = row[0], power = pole;
   const double last_power = std::pow(pole, static_cast<double>(count - 1));
@@ -89,7 +88,21 @@ void prefilter_row(float* values, std::size_t count, std::size_t stride, std::ve
   for (std::size_t i = 1; i < count; ++i) row[i] += pole * row[i - 1];
   row[count - 1] = pole / (pole * pole - 1.0) * (row[count - 1] + pole * row[count - 2]);
   for (std::size_t i = count - 1; i > 0; --i) row[i - 1] = pole * (row[i] - row[i - 1]);
-  for (std::size_t i = 0; i < count; ++i) values[i * stride] = static_cast<float>(row[i]);
+}
+
+/// Filters one row of `count` values, `stride` apart, from missing value to missing value.
+void prefilter_row(float* values, std::size_t count, std::size_t stride, std::vector<double>& run) {
+  run.clear();
+  for (std::size_t i = 0; i <= count; ++i) {
+    const float value = i < count ? values[i * stride] : std::numeric_limits<float>::quiet_NaN();
+    if (value == value) {
+      run.push_back(static_cast<double>(value));
+      continue;
+    }
+    prefilter_run(run);
+    for (std::size_t k = 0; k < run.size(); ++k) values[(i - run.size() + k) * stride] = static_cast<float>(run[k]);
+    run.clear();
+  }
 }
 
 }  // namespace

@@ -21,14 +21,17 @@ void read_scalars(const std::byte* row, int components, int component, std::int6
                   double inverse_scale, float* out) {
   const T* values = reinterpret_cast<const T*>(row) + component;
   const auto moved = static_cast<Working<T>>(offset), scale = static_cast<Working<T>>(inverse_scale);
-  for (std::int64_t i = 0; i < count; ++i) {
-    const auto value = static_cast<Working<T>>(values[i * components]);
-    const auto stored = static_cast<float>((value - moved) * scale);
+  const auto read = [&](std::int64_t from, std::int64_t to) {
+    const auto stored = static_cast<float>((static_cast<Working<T>>(values[from]) - moved) * scale);
     if constexpr (std::is_floating_point_v<T>)
-      out[i] = stored - stored == 0.0f ? stored : kMissing;
+      out[to] = stored - stored == 0.0f ? stored : kMissing;
     else
-      out[i] = stored;
-  }
+      out[to] = stored;
+  };
+  if (components == 1)
+    for (std::int64_t i = 0; i < count; ++i) read(i, i);  // in vectors
+  else
+    for (std::int64_t i = 0; i < count; ++i) read(i * components, i);
 }
 
 template <class T>
@@ -90,7 +93,31 @@ void BlockReader::read_row(std::int64_t j, std::int64_t k, const Block& block, f
   std::fill(out + before + inside, out + block.count[0], out[before + inside - 1]);
 }
 
+bool BlockReader::is_inside(const Block& block) const {
+  bool is_inside = true;
+  for (int axis = 0; axis < 3; ++axis)
+    is_inside &= block.first[axis] >= 0 && block.first[axis] + block.count[axis] <= dimensions_[axis];
+  return is_inside;
+}
+
+const std::byte* BlockReader::row_of(const Block& block, std::int64_t j, std::int64_t k) const {
+  const std::int64_t row = ((block.first[2] + k) * dimensions_[1] + block.first[1] + j) * dimensions_[0];
+  return values_ + static_cast<std::size_t>(row + block.first[0]) * value_bytes_;
+}
+
+void BlockReader::prefetch(const Block& block) const {
+  if (!is_inside(block)) return;
+  for (std::int64_t k = 0; k < block.count[2]; ++k)
+    for (std::int64_t j = 0; j < block.count[1]; ++j) __builtin_prefetch(row_of(block, j, k));
+}
+
 void BlockReader::read(const Block& block, float* out) const {
+  if (is_inside(block)) {
+    for (std::int64_t k = 0; k < block.count[2]; ++k)
+      for (std::int64_t j = 0; j < block.count[1]; ++j, out += block.count[0])
+        read_row_(row_of(block, j, k), components_, component_, block.count[0], offset_, inverse_scale_, out);
+    return;
+  }
   for (std::int64_t k = 0; k < block.count[2]; ++k)
     for (std::int64_t j = 0; j < block.count[1]; ++j)
       read_row(block.first[1] + j, block.first[2] + k, block, out + (k * block.count[1] + j) * block.count[0]);

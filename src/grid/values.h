@@ -37,10 +37,15 @@ class BlockReader {
   /// place inside; values that are not finite become NaN.
   void read(const Block& block, float* out) const;
 
+  /// Asks for the memory of a block that will be read soon.
+  void prefetch(const Block& block) const;
+
  private:
   using ReadRow = void (*)(const std::byte* row, int components, int component, std::int64_t count, double offset,
                            double inverse_scale, float* out);
 
+  bool is_inside(const Block& block) const;
+  const std::byte* row_of(const Block& block, std::int64_t j, std::int64_t k) const;
   void read_row(std::int64_t j, std::int64_t k, const Block& block, float* out) const;
 
   const std::byte* values_ = nullptr;

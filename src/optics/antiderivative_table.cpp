@@ -9,11 +9,8 @@
 namespace tetravox::optics {
 namespace {
 
-/// Nodes that the narrowest piece of the function gets at least, and the bounds of the table's size.
-constexpr double kNodesPerPiece = 128.0;
-constexpr std::int32_t kGentleNodes = 16384;
-constexpr std::int32_t kFewestNodes = 2048;
-constexpr std::int32_t kMostNodes = 16384;
+/// Nodes over the range in which the function varies: what the second-level cache holds.
+constexpr std::int32_t kNodes = 16384;
 /// Error of the picture that a flat segment between two nodes may cause; where it may be more, segments are integrated
 /// from control point to control point.
 constexpr double kCoarseError = 3e-4;
@@ -108,27 +105,12 @@ ValueRange extend_range(const ValueRange& varying, const ValueRange& range, std:
   return {varying.min - below * width, varying.max + above * width};
 }
 
-std::int32_t choose_node_count(const OpticalFunction& function, const ValueRange& covered) {
-  double narrowest = covered.max - covered.min;
-  const auto& points = function.points;
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const double width = points[i + 1].value - points[i].value;
-    const bool visible = points[i].extinction > 0.0 || points[i + 1].extinction > 0.0;
-    if (width > 0.0 && visible && points[i + 1].value > covered.min && points[i].value < covered.max)
-      narrowest = std::min(narrowest, width);
-  }
-  const double wanted = kNodesPerPiece * (covered.max - covered.min) / narrowest;
-  std::int32_t nodes = kFewestNodes;
-  while (nodes < wanted && nodes < kMostNodes) nodes *= 2;
-  return nodes;
-}
-
-/// Whether scalars may be off by half of `kFlatNodes` of `kGentleNodes` nodes.
+/// Whether scalars may be off by half of `kFlatNodes` of `kNodes` nodes.
 ///
 /// A stretch of length L at extinction rho whose scalar is off by ds changes the picture by rho' ds L exp(-rho L): at
 /// most rho' ds / (e rho), reached at L = 1 / rho.
 bool is_gentle_function(const OpticalFunction& function, const ValueRange& covered, double longest) {
-  const double error = 0.5 * AntiderivativeTable::kFlatNodes * (covered.max - covered.min) / kGentleNodes;
+  const double error = 0.5 * AntiderivativeTable::kFlatNodes * (covered.max - covered.min) / kNodes;
   for (std::size_t i = 0; i + 1 < function.points.size(); ++i) {
     const OpticalPoint& a = function.points[i];
     const OpticalPoint& b = function.points[i + 1];
@@ -272,9 +254,11 @@ void build_antiderivative_table(const OpticalFunction& function, const ScalarMap
                                 double longest, AntiderivativeTable& table) {
   const ValueRange varying = varying_range(function, map, range);
   table.is_gentle = is_gentle_function(function, varying, longest);
-  std::int32_t count = table.is_gentle ? kGentleNodes : choose_node_count(function, varying);
+  std::int32_t count = kNodes;
   const ValueRange covered = extend_range(varying, range, count);
   table.last_node = count;
+  const double half_node = 0.5 * (covered.max - covered.min) / count;
+  table.covers_data = range.min >= covered.min - half_node && range.max <= covered.max + half_node;
   table.first = map.stored_from_value(covered.min);
   table.nodes_per_scalar = static_cast<float>(map.scale * count / (covered.max - covered.min));
   fill_nodes(function, covered, longest, table);

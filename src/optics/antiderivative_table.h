@@ -51,6 +51,7 @@ struct AntiderivativeTable {
   bool is_gentle = false;
   static constexpr std::int32_t kFlatNodes = 4;
   static constexpr double kGentleError = 1e-3;
+  bool covers_data = false;          ///< whether no scalar lies beyond the ends
   float first = 0.0f;                ///< stored scalar at node 0
   float nodes_per_scalar = 1.0f;     ///< position in nodes = (stored - first) * nodes_per_scalar
   float density_per_unit = 1.0f;     ///< mean density = density_per_unit * difference of sums / difference of positions

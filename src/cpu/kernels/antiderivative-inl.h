@@ -38,7 +38,8 @@ class AntiderivativeIntegrator {
       : table_(*tables.antiderivative),
         entries_(table_.entries.data()),
         points_(*tables.control_points),
-        split_threshold_(12.0f * tables.tolerance) {}
+        split_threshold_(12.0f * tables.tolerance),
+        covers_data_(tables.antiderivative->covers_data && !tables.may_overshoot) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return point_at(position(scalar)); }
   HWY_INLINE Front restore_front(Int, Float scalar) const { return front_at(scalar); }
@@ -55,37 +56,71 @@ class AntiderivativeIntegrator {
     const Point back = point_at(position(segment.scalar_back));
     Float integrals[4];
     integrate_between(front, back, segment.length, integrals);
-
-    // Pick the segments that are thick, or that may change colour too much, or leave the table, or end where it is
-    // coarse.
-    const Float depth = integrals[0];
-    const Float nodes = hn::Abs(hn::Sub(back.position, front.position));
-    const Float change = hn::Min(constant(1.0f), hn::Mul(nodes, constant(table_.largest_color_slope)));
-    Mask special = hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), change), constant(split_threshold_)),
-                          hn::Gt(depth, constant(0.25f)));
-    special = hn::Or(special, hn::Or(outside(back.position), outside(front.position)));
     Mask coarse = hn::FirstN(kFloat, 0);
-    if (table_.has_coarse) {
-      coarse = hn::Or(is_coarse(front.position), is_coarse(back.position));
-      special = hn::Or(special, coarse);
-    }
-    const Accumulated before = sum;
-    composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
-    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, special)))
-      integrate_instead(segment, front, back, special, coarse, before, sum);
+    if (table_.has_coarse) coarse = hn::Or(is_coarse(front.position), is_coarse(back.position));
+    const Float nodes = hn::Abs(hn::Sub(back.position, front.position));
+    const Mask doubtful = hn::Or(may_err(integrals[0], nodes, sum), is_beyond(segment));
+    if (HWY_LIKELY(hn::AllFalse(kFloat, hn::Or(doubtful, coarse))))
+      composite_piece(integrals[0], integrals + 1, absorbed_ratio_series(integrals[0]), sum);
+    else
+      integrate_doubtful(segment, front, back, integrals, doubtful, coarse, sum);
     front = back;
   }
 
   // ---- for the gentle variant below ----
 
-  /// Integrates the segments of `special` carefully, from what had been accumulated `before`.
-  HWY_INLINE void integrate_instead(const Segments& segment, const Point& front, const Point& back, Mask special,
-                                    Mask coarse, const Accumulated& before, Accumulated& sum) const {
-    Accumulated other = before;
+  /// Replaces the integrals of the segments in `lanes`, which are too flat for a difference of sums: densities at their
+  /// middle.
+  HWY_NOINLINE void integrate_flat(Float middle, Float length, Mask lanes, Float integrals[4]) const {
+    const Float clamped = inside(middle);
+    const Int node = hn::Min(hn::ConvertTo(kInt, clamped), hn::Set(kInt, table_.last_node - 1));
+    const Float f = hn::Sub(clamped, hn::ConvertTo(kFloat, node));
+    const Uint record = hn::BitCast(kUint, hn::Add(node, node));
+    const Record low = load_records(entries_->densities.data(), record);
+    const Record high = load_records((entries_ + 1)->densities.data(), record);
+    const auto replace = [&](int i, Float a, Float b) {
+      const Float density = multiply_add(f, hn::Sub(b, a), a);
+      integrals[i] = hn::IfThenElse(lanes, hn::Mul(density, length), integrals[i]);
+    };
+    replace(0, low.x, high.x);
+    replace(1, low.y, high.y);
+    replace(2, low.z, high.z);
+    replace(3, low.w, high.w);
+  }
+
+  /// Segments that are thick, or that may change colour too much: a first guess, by the steepest colour of all.
+  HWY_INLINE Mask may_err(Float depth, Float nodes, const Accumulated& sum) const {
+    const Float change = hn::Min(constant(1.0f), hn::Mul(nodes, constant(table_.largest_color_slope)));
+    const Float error = hn::Mul(hn::Mul(hn::Mul(depth, depth), change), sum.transmittance);
+    return hn::Or(hn::Gt(error, constant(split_threshold_)), hn::Gt(depth, constant(0.25f)));
+  }
+  /// Segments of which an end lies beyond the table, where data may.
+  HWY_INLINE Mask is_beyond(const Segments& segment) const {
+    if (HWY_LIKELY(covers_data_)) return hn::FirstN(kFloat, 0);
+    return hn::Or(outside(position(segment.scalar_front)), outside(position(segment.scalar_back)));
+  }
+
+  /// Composites segments some of which need more than the mean: by the colours that they really pass, and in pieces
+  /// where these differ too much, or where the table does not serve (`coarse`, and beyond its ends).
+  HWY_NOINLINE void integrate_doubtful(const Segments& segment, const Point& front, const Point& back,
+                                       const Float integrals[4], Mask doubtful, Mask coarse, Accumulated& sum) const {
+    const Float depth = integrals[0];
+    const Float change =
+        hn::Min(constant(1.0f), hn::AbsDiff(variation_at(back.position), variation_at(front.position)));
+    const Float error = hn::Mul(hn::Mul(hn::Mul(depth, depth), change), sum.transmittance);
+    // Only what was doubtful by itself: a ray must not depend on its neighbours.
+    Mask special = hn::And(doubtful, hn::Or(hn::Gt(error, constant(split_threshold_)), is_beyond(segment)));
     // What is to be cut into pieces must not be finer than the table, either.
-    if (table_.has_coarse) coarse = hn::Or(coarse, hn::And(special, passes_coarse(front.position, back.position)));
+    if (table_.has_coarse) {
+      coarse = hn::Or(coarse, hn::And(special, passes_coarse(front.position, back.position)));
+      special = hn::Or(special, coarse);
+    }
+    Accumulated other = sum;
+    composite_piece(depth, integrals + 1, absorbed_ratio(depth), sum);
+    if (hn::AllFalse(kFloat, special)) return;
     if (!hn::AllFalse(kFloat, coarse)) integrate_exactly(segment, coarse, other);
-    integrate_pieces(segment.length, front, back, hn::AndNot(coarse, special), other);
+    const Mask pieces = hn::AndNot(coarse, special);
+    if (!hn::AllFalse(kFloat, pieces)) integrate_pieces(segment.length, front, back, pieces, other);
     sum.red = hn::IfThenElse(special, other.red, sum.red);
     sum.green = hn::IfThenElse(special, other.green, sum.green);
     sum.blue = hn::IfThenElse(special, other.blue, sum.blue);
@@ -246,84 +281,72 @@ class AntiderivativeIntegrator {
   const optics::AntiderivativeTable::Node* entries_;
   ControlPoints points_;
   float split_threshold_;
+  bool covers_data_;
 };
 
 /// The same for functions that are gentle at the table's resolution (`AntiderivativeTable::is_gentle`): scalars are
 /// rounded to nodes, so that a segment costs one 16-byte load instead of three.
 class GentleAntiderivativeIntegrator {
  public:
-  /// The node that stands for the scalar at the front, and the antiderivatives there.
+  /// The scalar at the front, the node that stands for it, and the antiderivatives there.
   struct Front {
+    Float position;  // in nodes
     Int node;
     Int sums[4];
   };
 
   explicit GentleAntiderivativeIntegrator(const IntegratorTables& tables)
-      : table_(*tables.antiderivative), precise_(tables), split_threshold_(12.0f * tables.tolerance) {}
+      : table_(*tables.antiderivative), precise_(tables) {}
 
-  HWY_INLINE Front front_at(Float scalar) const { return front_of(nearest_node(precise_.position(scalar))); }
-  HWY_INLINE Front restore_front(Int node, Float scalar) const {
-    const hn::Mask<IntTag> fresh = hn::Lt(node, hn::Zero(kInt));
-    return front_of(hn::IfThenElse(fresh, nearest_node(precise_.position(scalar)), node));
-  }
+  HWY_INLINE Front front_at(Float scalar) const { return front_of(precise_.inside(precise_.position(scalar))); }
+  HWY_INLINE Front restore_front(Int, Float scalar) const { return front_at(scalar); }
   static HWY_INLINE Int node_of(const Front& front) { return front.node; }
   static HWY_INLINE void replace_front(Mask mask, const Front& from, Front& to) {
+    to.position = hn::IfThenElse(mask, from.position, to.position);
     to.node = hn::IfThenElse(int_mask(mask), from.node, to.node);
     for (int i = 0; i < 4; ++i) to.sums[i] = hn::IfThenElse(int_mask(mask), from.sums[i], to.sums[i]);
   }
 
   HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
-    const Float back_position = precise_.position(segment.scalar_back);
-    const Int back = nearest_node(back_position);
-    const Int nodes = hn::Sub(back, front.node);
-    const hn::Mask<IntTag> flat = hn::Lt(hn::Abs(nodes), hn::Set(kInt, kFlatNodes + 1));
-    const Mask flat_lanes = hn::RebindMask(kFloat, flat);
-
-    // A flat segment reads the density at its middle; any other, the antiderivatives at its back.
-    const Int middle = hn::Add(back, front.node);  // twice the node: a node's densities follow its sums
-    const Int at = hn::IfThenElse(flat, hn::Or(middle, hn::Set(kInt, 1)), hn::Add(back, back));
-    const Record record = load_records(table_.entries.data()->sums.data(), hn::BitCast(kUint, at));
-    const Float values[4] = {record.x, record.y, record.z, record.w};
-    const Float node_count = hn::ConvertTo(kFloat, hn::IfThenElse(flat, hn::Set(kInt, 1), nodes));
-    const Float scale = hn::Div(hn::Mul(segment.length, constant(table_.density_per_unit)), node_count);
+    const Front back = front_at(segment.scalar_back);
+    const Float nodes = hn::ConvertTo(kFloat, hn::Sub(back.node, front.node));
+    const Mask flat = hn::Lt(hn::Abs(hn::Sub(back.position, front.position)), constant(kFlatNodes));
+    const Float scale = hn::Div(hn::Mul(segment.length, constant(table_.density_per_unit)),
+                                hn::IfThenElse(flat, constant(1.0f), nodes));
     Float integrals[4];
-    for (int i = 0; i < 4; ++i) {
-      const Int difference = hn::Sub(hn::BitCast(kInt, values[i]), front.sums[i]);
-      integrals[i] = hn::IfThenElse(flat_lanes, hn::Mul(values[i], segment.length),
-                                    hn::Mul(hn::ConvertTo(kFloat, difference), scale));
+    for (int i = 0; i < 4; ++i)
+      integrals[i] = hn::Mul(hn::ConvertTo(kFloat, hn::Sub(back.sums[i], front.sums[i])), scale);
+    // Rays that have nothing to integrate do not count.
+    if (!hn::AllFalse(kFloat, hn::And(flat, hn::Gt(segment.length, constant(0.0f))))) {
+      const Float middle = hn::Mul(constant(0.5f), hn::Add(back.position, front.position));
+      precise_.integrate_flat(middle, segment.length, flat, integrals);
     }
 
-    const Float depth = integrals[0];
-    const Float change = hn::Min(constant(1.0f), hn::Mul(hn::Abs(node_count), constant(table_.largest_color_slope)));
-    const Mask thick = hn::Or(hn::Gt(hn::Mul(hn::Mul(depth, depth), change), constant(split_threshold_)),
-                              hn::Gt(depth, constant(0.25f)));
-    const Mask special = hn::Or(
-        thick, hn::Or(precise_.outside(back_position), precise_.outside(precise_.position(segment.scalar_front))));
-    const Accumulated before = sum;
-    composite_piece(depth, integrals + 1, absorbed_ratio_series(depth), sum);
-    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, special)))
-      precise_.integrate_instead(segment, precise_.front_at(segment.scalar_front),
-                                 precise_.front_at(segment.scalar_back), special, hn::FirstN(kFloat, 0), before, sum);
-
-    // The front stays where it is while the scalar is flat, so that nothing is lost to rounding.
-    front.node = hn::IfThenElse(flat, front.node, back);
-    for (int i = 0; i < 4; ++i) front.sums[i] = hn::IfThenElse(flat, front.sums[i], hn::BitCast(kInt, values[i]));
+    const Mask beyond = precise_.is_beyond(segment);
+    const Mask doubtful = hn::Or(precise_.may_err(integrals[0], hn::Abs(nodes), sum), beyond);
+    if (HWY_LIKELY(hn::AllFalse(kFloat, doubtful)))
+      composite_piece(integrals[0], integrals + 1, absorbed_ratio_series(integrals[0]), sum);
+    else
+      precise_.integrate_doubtful(segment, precise_.front_at(segment.scalar_front),
+                                  precise_.front_at(segment.scalar_back), integrals, doubtful, hn::FirstN(kFloat, 0),
+                                  sum);
+    front = back;
   }
 
  private:
-  static constexpr std::int32_t kFlatNodes = optics::AntiderivativeTable::kFlatNodes;
+  static constexpr float kFlatNodes = optics::AntiderivativeTable::kFlatNodes;
 
-  HWY_INLINE Front front_of(Int node) const {
+  HWY_INLINE Front front_of(Float position) const {
+    const Int node = hn::NearestInt(position);
     const Record record = load_records(table_.entries.data()->sums.data(), hn::BitCast(kUint, hn::Add(node, node)));
-    return {node,
+    return {position,
+            node,
             {hn::BitCast(kInt, record.x), hn::BitCast(kInt, record.y), hn::BitCast(kInt, record.z),
              hn::BitCast(kInt, record.w)}};
   }
-  HWY_INLINE Int nearest_node(Float at) const { return hn::NearestInt(precise_.inside(at)); }
 
   const optics::AntiderivativeTable& table_;
   AntiderivativeIntegrator precise_;
-  float split_threshold_;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -19,7 +19,9 @@
 #include "src/cpu/kernels/integrators-inl.h"
 #include "src/cpu/kernels/march-inl.h"
 #include "src/cpu/kernels/rasterize-inl.h"
+#include "src/cpu/kernels/rays-inl.h"
 #include "src/cpu/kernels/sample-inl.h"
+#include "src/cpu/kernels/stride-inl.h"
 #include "src/cpu/kernels/walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -41,6 +43,11 @@ std::uint64_t sample(const MarchJob& job, int count) {
   return RateMarcher<Sampler>(job).run(count);
 }
 
+template <class Integrator>
+std::uint64_t stride(const MarchJob& job, int count) {
+  return Strider<Integrator>(job).run(count);
+}
+
 Kernels make_kernels() {
   Kernels kernels;
   kernels.rasterize_face = &rasterize_face;
@@ -49,12 +56,17 @@ Kernels make_kernels() {
   kernels.walk_partial = &walk<PartialIntegrator, false>;
   kernels.walk_post = &walk<PostIntegrator, false>;
   kernels.walk_cells = &walk<CellIntegrator, true>;
+  kernels.make_records = &make_records;
   kernels.start_march = &start_march;
   kernels.clip_brick = &clip_brick;
   kernels.march_antiderivative = &march<AntiderivativeIntegrator>;
   kernels.march_gentle_antiderivative = &march<GentleAntiderivativeIntegrator>;
   kernels.march_partial = &march<PartialIntegrator>;
   kernels.march_post = &march<PostIntegrator>;
+  kernels.stride_antiderivative = &stride<AntiderivativeIntegrator>;
+  kernels.stride_gentle_antiderivative = &stride<GentleAntiderivativeIntegrator>;
+  kernels.stride_partial = &stride<PartialIntegrator>;
+  kernels.stride_post = &stride<PostIntegrator>;
   kernels.march_cells = &march_cells;
   kernels.march_densities = &march_densities;
   kernels.sample_antiderivative = &sample<ScalarSampler<AntiderivativeIntegrator>>;

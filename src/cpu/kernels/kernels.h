@@ -48,6 +48,7 @@ struct IntegratorTables {
   const optics::TransparencyTable* transparency = nullptr;
   float tolerance = 5e-5f;
   int samples = 8;
+  bool may_overshoot = false;  ///< whether scalars may lie beyond the range of the data
 };
 
 /// Where a ray enters the mesh.
@@ -102,21 +103,30 @@ struct MarchRays {
   static constexpr int kCount = kTileSize * kTileSize;
   static constexpr int kPadding = 16;  ///< kernels load whole vectors
 
-  alignas(64) float origin[3][kCount];     ///< at depth 0 of the camera frame
-  alignas(64) float direction[3][kCount];  ///< for one unit of depth
-  alignas(64) float world_per_z[kCount];
-  alignas(64) float z_far[kCount];  ///< where the ray ends: infinite, or below everything once it is settled
-  alignas(64) float red[kCount], green[kCount], blue[kCount], transmittance[kCount];
+  alignas(64) float start[kCount][4];   ///< origin (at depth 0 of the camera frame), world length of a unit of depth
+  alignas(64) float course[kCount][4];  ///< direction, for one unit of depth; nothing
+  alignas(64) float sums[kCount][4];    ///< red, green, blue, transmittance
+  alignas(64) float z_far[kCount];      ///< where the ray ends: infinite, or below everything once it is settled
+  // For cutting with bricks: the same axis by axis, and 1 / direction (anything for rays parallel to the axis' planes).
+  alignas(64) float origin[3][kCount], direction[3][kCount], inverse[3][kCount];
+  bool has_parallel[3];                      ///< whether a ray is
+  alignas(64) std::uint8_t has_met[kCount];  ///< whether the ray has met a brick
   // At a fixed rate: where the ray leaves the grid, the sample before (depth, scalar or densities), the next one's
   // number.
   alignas(64) float z_exit[kCount], z_sample[kCount], sample[4][kCount], next_number[kCount];
-  /// Those that meet the brick at hand, by the number of cells that they cross.
-  alignas(64) std::int32_t ray[kCount + kPadding];
-  alignas(64) float z_enter[kCount + kPadding], z_leave[kCount + kPadding];
-  // Scratch: the same, in order of pixels.
-  alignas(64) std::int32_t unsorted_ray[kCount + kPadding], cells[kCount + kPadding];
-  alignas(64) float unsorted_enter[kCount + kPadding], unsorted_leave[kCount + kPadding];
+
+  /// Those that meet the brick at hand.
+  struct Met {
+    alignas(64) std::int32_t ray[kCount + kPadding];  ///< in the tile
+    alignas(64) float z_enter[kCount + kPadding], z_leave[kCount + kPadding];
+    alignas(64) std::int32_t cells[kCount + kPadding];  ///< about how many cells it crosses
+  };
+  Met met;       ///< by the number of cells
+  Met unsorted;  ///< scratch: in order of pixels
 };
+
+/// Floats behind the nodes, and records behind the records, that kernels may touch.
+inline constexpr std::size_t kRecordPadding = 32;
 
 /// A brick as a lattice of cells between whose corners the scalar is trilinear (or in which it is constant).
 struct MarchBrick {
@@ -142,9 +152,11 @@ struct MarchJob {
   float allowed_rate = 0.0f;  ///< error in colour for one unit of world length that a segment may have
   float most_pieces = 12.0f;  ///< that a cell is cut into
   float z_near = 0.0f;
-  float sample_distance = 0.0f;  ///< world length between samples at a fixed rate
+  float stride = 1.0f;           ///< lattice cells
+  float sample_distance = 0.0f;  ///< world length between samples at a fixed rate, which goes before `stride`
   bool is_constant = false;      ///< whether the scalar is constant in each cell
   bool use_early_ray_termination = true;
+  float negligible = 0.0f;  ///< transmittance below which a ray ends, too
 };
 
 /// Where the rays of a tile lie in a grid.
@@ -165,6 +177,9 @@ struct Kernels {
   WalkStatistics (*walk_gentle_antiderivative)(const WalkJob& job) = nullptr;  ///< for `AntiderivativeTable::is_gentle`
   WalkStatistics (*walk_partial)(const WalkJob& job) = nullptr;
   WalkStatistics (*walk_post)(const WalkJob& job) = nullptr;
+  /// Corners of the cells of a lattice as `MarchBrick::records`, from its nodes [z][y][x]; both with room for
+  /// `kRecordPadding` more.
+  void (*make_records)(const float* nodes, const std::int32_t cells[3], float* records) = nullptr;
   void (*start_march)(const MarchStart& start) = nullptr;
   /// Finds the rays that meet the brick; returns how many.
   int (*clip_brick)(const MarchJob& job) = nullptr;
@@ -174,6 +189,12 @@ struct Kernels {
   std::uint64_t (*march_partial)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*march_post)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*march_densities)(const MarchJob& job, int count) = nullptr;  ///< pre-classification
+  /// In equal steps of at most `MarchJob::stride` lattice cells instead of from cell to cell: bricks that are even and
+  /// have no missing values.
+  std::uint64_t (*stride_antiderivative)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*stride_gentle_antiderivative)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*stride_partial)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*stride_post)(const MarchJob& job, int count) = nullptr;
   /// At a fixed rate: pre-integrated from sample to sample, post-classified, pre-classified.
   std::uint64_t (*sample_antiderivative)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*sample_partial)(const MarchJob& job, int count) = nullptr;

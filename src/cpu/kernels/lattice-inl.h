@@ -18,6 +18,26 @@ namespace HWY_NAMESPACE {
 constexpr float kParallel = 1e-6f;
 constexpr float kNever = 1e30f;
 
+/// By what part of itself a depth may be off.
+constexpr float kRoundedDepth = 4e-6f;
+
+/// Where a vector of rays comes from and goes to. Grid coordinates.
+struct Course {
+  Float origin[3], direction[3], world_per_z;
+
+  HWY_INLINE Course(const MarchRays& rays, int first) {
+    const Uint ray = hn::BitCast(kUint, hn::LoadU(kInt, rays.met.ray + first));
+    const Record start = load_records(rays.start, ray), course = load_records(rays.course, ray);
+    origin[0] = start.x;
+    origin[1] = start.y;
+    origin[2] = start.z;
+    world_per_z = start.w;
+    direction[0] = course.x;
+    direction[1] = course.y;
+    direction[2] = course.z;
+  }
+};
+
 /// A vector of rays in a lattice of cells. Lattice coordinates count the cells from the brick's lower corner.
 ///
 /// Along each axis a ray meets the planes between cells at equal steps (Amanatides and Woo 1987); from the depth at
@@ -29,25 +49,26 @@ struct LatticeRays {
   Float rate[3];
   Int stride[3];  ///< from cell to cell, in records
   Int cell;       ///< record at hand
-  Float front, leave, world_per_z;
+  Float front, leave, leave_soon, world_per_z;
   Mask alive;
 
   /// Records are those of cells, or of nodes: `nodes_more` along each axis.
   LatticeRays(const MarchRays& rays, const MarchBrick& brick, int first, int count, int nodes_more = 0)
       : brick_(brick) {
-    const Int ray = hn::Load(kInt, rays.ray + first);
-    front = hn::Load(kFloat, rays.z_enter + first);
-    leave = hn::Load(kFloat, rays.z_leave + first);
+    const MarchRays::Met& met = rays.met;
+    front = hn::LoadU(kFloat, met.z_enter + first);
+    leave = hn::LoadU(kFloat, met.z_leave + first);
+    leave_soon = hn::Sub(leave, hn::Mul(constant(kRoundedDepth), hn::Abs(leave)));
     alive = hn::FirstN(kFloat, static_cast<std::size_t>(count));
-    world_per_z = hn::GatherIndex(kFloat, rays.world_per_z, ray);
+    const Course course(rays, first);
+    world_per_z = course.world_per_z;
     cell = hn::Zero(kInt);
     std::int32_t axis_stride = 1;
     for (int axis = 0; axis < 3; ++axis) {
       const float n = static_cast<float>(brick.cells[axis]);
       const Float cells_per_unit = constant(n / (brick.upper[axis] - brick.lower[axis]));
-      const Float origin = hn::Mul(
-          hn::Sub(hn::GatherIndex(kFloat, rays.origin[axis], ray), constant(brick.lower[axis])), cells_per_unit);
-      const Float direction = hn::Mul(hn::GatherIndex(kFloat, rays.direction[axis], ray), cells_per_unit);
+      const Float origin = hn::Mul(hn::Sub(course.origin[axis], constant(brick.lower[axis])), cells_per_unit);
+      const Float direction = hn::Mul(course.direction[axis], cells_per_unit);
       const Mask parallel = hn::Lt(hn::Abs(direction), hn::Mul(constant(kParallel), cells_per_unit));
       const Mask rising = hn::Ge(direction, constant(0.0f));
       const Float inverse = hn::Div(constant(1.0f), hn::IfThenElse(parallel, constant(1.0f), direction));
@@ -65,11 +86,15 @@ struct LatticeRays {
       axis_stride *= brick.cells[axis] + nodes_more;
     }
     last_cell = hn::Set(kInt, axis_stride - 1);
-    if (brick.is_uneven) start_uneven(rays, ray, nodes_more);
+    if (brick.is_uneven) start_uneven(course, nodes_more);
   }
 
-  /// Depth at which the rays leave their cells.
-  HWY_INLINE Float back() const { return hn::Max(hn::Min(hn::Min(hn::Min(next[0], next[1]), next[2]), leave), front); }
+  /// Depth at which the rays leave their cells. What would remain to the brick's end by rounding alone belongs to the
+  /// last cell.
+  HWY_INLINE Float back() const {
+    const Float plane = hn::Min(hn::Min(next[0], next[1]), next[2]);
+    return hn::Max(hn::IfThenElse(hn::Lt(plane, leave_soon), plane, leave), front);
+  }
 
   /// On to the next cell.
   HWY_INLINE void advance(Float back) {
@@ -96,12 +121,12 @@ struct LatticeRays {
 
  private:
   /// Finds the cells again where the planes are not equally spaced.
-  HWY_NOINLINE void start_uneven(const MarchRays& rays, Int ray, int nodes_more) {
+  HWY_NOINLINE void start_uneven(const Course& course, int nodes_more) {
     cell = hn::Zero(kInt);
     std::int32_t axis_stride = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      origins[axis] = hn::GatherIndex(kFloat, rays.origin[axis], ray);
-      directions[axis] = hn::GatherIndex(kFloat, rays.direction[axis], ray);
+      origins[axis] = course.origin[axis];
+      directions[axis] = course.direction[axis];
       const Float at = multiply_add(directions[axis], front, origins[axis]);
       indices[axis] = hn::Zero(kInt);
       for (int i = 1; i < brick_.cells[axis]; ++i)
@@ -148,6 +173,19 @@ struct LatticeRays {
   Float origins[3], directions[3];  // of uneven bricks, like `indices`
   Int indices[3];
 };
+
+/// See `Kernels::make_records`.
+inline void make_records(const float* nodes, const std::int32_t cells[3], float* records) {
+  const std::ptrdiff_t row = cells[0] + 1, slice = row * (cells[1] + 1);
+  for (std::int32_t k = 0; k <= cells[2]; ++k)
+    for (std::int32_t j = 0; j < cells[1]; ++j) {
+      const float *low = nodes + k * slice + j * row, *high = low + row;
+      for (std::int32_t i = 0; i < cells[0]; i += static_cast<std::int32_t>(kLanes))
+        hn::StoreInterleaved4(hn::LoadU(kFloat, low + i), hn::LoadU(kFloat, low + i + 1), hn::LoadU(kFloat, high + i),
+                              hn::LoadU(kFloat, high + i + 1), kFloat, records + 4 * i);
+      records += 4 * cells[0];
+    }
+}
 
 /// The corners of the cells that a vector of rays is in.
 struct CellCorners {

@@ -10,132 +10,58 @@
 #include "src/cpu/kernels/integrators-inl.h"
 #include "src/cpu/kernels/kernels.h"
 #include "src/cpu/kernels/lattice-inl.h"
+#include "src/cpu/kernels/rays-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 
 #include <algorithm>
-#include <cmath>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
 
-/// Origins and directions of a tile's rays; nothing accumulated yet.
-inline void start_march(const MarchStart& start) {
-  MarchRays& tile = *start.tile;
-  const RayGrid& grid = *start.rays;
-  const float* m = start.grid_from_camera;
-  for (int row = 0; row < kTileSize; ++row) {
-    const int y = std::min(start.row + row, grid.height - 1);
-    const float y_offset = grid.row_offset[y], y_slope = grid.row_slope[y];
-    for (int column = 0; column < kTileSize; ++column) {
-      const int x = std::min(start.column + column, grid.width - 1), i = row * kTileSize + column;
-      const float x_offset = grid.column_offset[x], x_slope = grid.column_slope[x];
-      for (int axis = 0; axis < 3; ++axis) {
-        tile.origin[axis][i] = m[4 * axis] * x_offset + m[4 * axis + 1] * y_offset + m[4 * axis + 3];
-        tile.direction[axis][i] = m[4 * axis] * x_slope + m[4 * axis + 1] * y_slope + m[4 * axis + 2];
-      }
-      tile.world_per_z[i] = grid.world_per_local * std::sqrt(1.0f + x_slope * x_slope + y_slope * y_slope);
-      const bool is_inside = start.column + column < grid.width && start.row + row < grid.height;
-      tile.z_far[i] = is_inside ? kNever : -kNever;
-      tile.z_exit[i] = kNever;
-      for (int axis = 0; axis < 3; ++axis) {
-        const float direction = tile.direction[axis][i];
-        if (std::abs(direction) < kParallel) continue;
-        const float inverse = 1.0f / direction;
-        tile.z_exit[i] = std::min(tile.z_exit[i], std::max((0.0f - tile.origin[axis][i]) * inverse,
-                                                           (start.upper[axis] - tile.origin[axis][i]) * inverse));
-      }
-      tile.z_sample[i] = -kNever;
-      tile.red[i] = tile.green[i] = tile.blue[i] = 0.0f;
-      tile.transmittance[i] = 1.0f;
-    }
-  }
-}
+/// The scalar along a vector of rays inside their cells: a cubic of u, 0 at the front and 1 at the back.
+struct CellCubic {
+  Float c0, c1, c2, c3;
 
-/// Rays that cross about as many cells travel together: a counting sort by that number.
-inline void sort_rays(MarchRays& rays, int count) {
-  constexpr int kMost = 64;
-  int starts[kMost + 1] = {};
-  for (int i = 0; i < count; ++i) ++starts[std::min(rays.cells[i], kMost - 1) + 1];
-  for (int i = 1; i <= kMost; ++i) starts[i] += starts[i - 1];
-  for (int i = 0; i < count; ++i) {
-    const int to = starts[std::min(rays.cells[i], kMost - 1)]++;
-    rays.ray[to] = rays.unsorted_ray[i];
-    rays.z_enter[to] = rays.unsorted_enter[i];
-    rays.z_leave[to] = rays.unsorted_leave[i];
-  }
-  // The lanes beyond the last ray follow some ray.
-  for (int i = count; i < count + MarchRays::kPadding; ++i) {
-    rays.ray[i] = 0;
-    rays.z_enter[i] = rays.z_leave[i] = 0.0f;
-  }
-}
+  HWY_INLINE Float eval(Float u) const { return multiply_add(u, multiply_add(u, multiply_add(u, c3, c2), c1), c0); }
+  HWY_INLINE Float back() const { return hn::Add(hn::Add(c0, c1), hn::Add(c2, c3)); }
 
-/// Cuts the rays with the brick's box (Kay and Kajiya 1986). The plane between two bricks gives both the same depth, so
-/// that nothing is lost or met twice.
-inline int clip_brick(const MarchJob& job) {
-  MarchRays& rays = *job.rays;
-  const MarchBrick& brick = *job.brick;
-  constexpr int kStep = static_cast<int>(kLanes);
-  int count = 0;
-  for (int row = brick.bounds.row_begin; row < brick.bounds.row_end; ++row)
-    for (int column = brick.bounds.column_begin / kStep * kStep; column < brick.bounds.column_end; column += kStep) {
-      const int first = row * kTileSize + column;
-      Float enter = constant(job.z_near), leave = hn::Load(kFloat, rays.z_far + first);
-      Float cells = constant(0.5f);
-      for (int axis = 0; axis < 3; ++axis) {
-        const Float origin = hn::Load(kFloat, rays.origin[axis] + first);
-        const Float direction = hn::Load(kFloat, rays.direction[axis] + first);
-        const Mask parallel = hn::Lt(hn::Abs(direction), constant(kParallel));
-        const Float inverse = hn::Div(constant(1.0f), hn::IfThenElse(parallel, constant(1.0f), direction));
-        const Float a = hn::Mul(hn::Sub(constant(brick.lower[axis]), origin), inverse);
-        const Float b = hn::Mul(hn::Sub(constant(brick.upper[axis]), origin), inverse);
-        const Mask below_end = brick.is_last[axis] ? hn::Le(origin, constant(brick.upper[axis]))
-                                                   : hn::Lt(origin, constant(brick.upper[axis]));
-        const Mask between = hn::And(hn::Ge(origin, constant(brick.lower[axis])), below_end);
-        enter = hn::Max(enter, hn::IfThenElse(parallel, constant(-kNever), hn::Min(a, b)));
-        leave = hn::Min(leave, hn::IfThenElse(parallel, hn::IfThenElse(between, constant(kNever), constant(-kNever)),
-                                              hn::Max(a, b)));
-        const float cells_per_unit = static_cast<float>(brick.cells[axis]) / (brick.upper[axis] - brick.lower[axis]);
-        cells = multiply_add(hn::Abs(direction), constant(cells_per_unit), cells);
-      }
-      const Mask hit = hn::Gt(leave, enter);
-      if (hn::AllFalse(kFloat, hit)) continue;
-      const Int crossed = hn::ConvertTo(kInt, hn::Min(hn::Mul(cells, hn::Sub(leave, enter)), constant(1000.0f)));
-      hn::CompressStore(hn::Iota(kInt, first), int_mask(hit), kInt, rays.unsorted_ray + count);
-      hn::CompressStore(crossed, int_mask(hit), kInt, rays.cells + count);
-      hn::CompressStore(enter, hit, kFloat, rays.unsorted_enter + count);
-      count += static_cast<int>(hn::CompressStore(leave, hit, kFloat, rays.unsorted_leave + count));
-    }
-  if (count > 0) sort_rays(rays, count);
-  return count;
-}
-
-/// What a vector of rays has gathered so far.
-inline Accumulated load_accumulated(const MarchRays& rays, Int ray) {
-  return {hn::GatherIndex(kFloat, rays.red, ray), hn::GatherIndex(kFloat, rays.green, ray),
-          hn::GatherIndex(kFloat, rays.blue, ray), hn::GatherIndex(kFloat, rays.transmittance, ray)};
-}
-
-inline void store_accumulated(const Accumulated& sum, const MarchJob& job, int first, int count) {
-  MarchRays& rays = *job.rays;
-  HWY_ALIGN float values[4][kLanes];
-  HWY_ALIGN std::int32_t ended[kLanes];
-  hn::Store(sum.red, kFloat, values[0]);
-  hn::Store(sum.green, kFloat, values[1]);
-  hn::Store(sum.blue, kFloat, values[2]);
-  hn::Store(sum.transmittance, kFloat, values[3]);
-  const Mask settled = job.use_early_ray_termination ? is_settled(sum) : hn::FirstN(kFloat, 0);
-  hn::Store(hn::IfThenElseZero(int_mask(settled), hn::Set(kInt, 1)), kInt, ended);
-  for (int i = 0; i < count; ++i) {
-    const std::int32_t ray = rays.ray[first + i];
-    rays.red[ray] = values[0][i];
-    rays.green[ray] = values[1][i];
-    rays.blue[ray] = values[2][i];
-    rays.transmittance[ray] = values[3][i];
-    if (ended[i]) rays.z_far[ray] = -kNever;
+  /// Bound on the distance from the chord: u (u - 1) (c2 + c3 (1 + u)).
+  HWY_INLINE Float bend() const {
+    const Float near = hn::Abs(hn::Add(c2, c3)), far = hn::Abs(hn::Add(c2, hn::Add(c3, c3)));
+    return hn::Mul(constant(0.25f), hn::Max(near, far));
   }
+
+  /// Becomes constant 0 where `mask` is set.
+  HWY_INLINE void clear(Mask mask) {
+    for (Float* c : {&c0, &c1, &c2, &c3}) *c = hn::IfThenZeroElse(mask, *c);
+  }
+};
+
+HWY_INLINE CellCubic make_cubic(const CellCorners& corners, const LatticeRays& rays, Float back) {
+  Float front_place[3], step[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    front_place[axis] = rays.place(axis, rays.front);
+    step[axis] = hn::Sub(rays.place(axis, back), front_place[axis]);
+  }
+  const auto [x, y, z] = front_place;
+  const auto [dx, dy, dz] = step;
+  const Float xy_slope = multiply_add(x, dy, hn::Mul(y, dx)), xy_bend = hn::Mul(dx, dy);
+  // The lower square is a + b x + c y + d xy, which along the ray is a quadratic; so is what the upper one adds.
+  const auto along = [&](const Record& r, Float quadratic[3]) {
+    const Float b = hn::Sub(r.y, r.x), c = hn::Sub(r.z, r.x), d = hn::Sub(hn::Sub(r.w, r.y), c);
+    quadratic[0] = hn::Add(r.x, multiply_add(b, x, hn::Mul(multiply_add(d, x, c), y)));
+    quadratic[1] = multiply_add(b, dx, multiply_add(c, dy, hn::Mul(d, xy_slope)));
+    quadratic[2] = hn::Mul(d, xy_bend);
+  };
+  Float low[3], rise[3];
+  along(corners.low, low);
+  along({hn::Sub(corners.high.x, corners.low.x), hn::Sub(corners.high.y, corners.low.y),
+         hn::Sub(corners.high.z, corners.low.z), hn::Sub(corners.high.w, corners.low.w)},
+        rise);
+  return {multiply_add(z, rise[0], low[0]), multiply_add(dz, rise[0], multiply_add(z, rise[1], low[1])),
+          multiply_add(dz, rise[1], multiply_add(z, rise[2], low[2])), hn::Mul(dz, rise[2])};
 }
 
 /// Trilinear cells.
@@ -154,7 +80,7 @@ class Marcher {
   /// Takes rays [first, first + count) through the brick.
   void march(int first, int count) {
     LatticeRays rays(*job_.rays, brick_, first, count);
-    Accumulated sum = load_accumulated(*job_.rays, hn::Load(kInt, job_.rays->ray + first));
+    Accumulated sum = load_accumulated(*job_.rays, first);
     Float scalar_front = CellCorners(brick_, rays.cell).eval(rays, rays.front);
     scalar_front = hn::IfThenElse(hn::Eq(scalar_front, scalar_front), scalar_front, constant(0.0f));
     auto front = integrator_.front_at(scalar_front);
@@ -162,74 +88,60 @@ class Marcher {
       segments_ += hn::CountTrue(kFloat, rays.alive);
       const CellCorners corners(brick_, rays.cell);
       const Float back = rays.back();
-      Segments segment{scalar_front, corners.eval(rays, back),
-                       hn::IfThenElseZero(rays.alive, hn::Mul(hn::Sub(back, rays.front), rays.world_per_z))};
-      if (brick_.has_missing) leave_out_missing(corners, rays, segment, front);
-      if (brick_.steepness > 0.0f)
-        integrate_curve(corners, rays, back, segment, front, sum);
-      else
-        integrator_.integrate(segment, front, sum);
-      scalar_front = segment.scalar_back;
+      CellCubic cubic = make_cubic(corners, rays, back);
+      Float length = hn::IfThenElseZero(rays.alive, hn::Mul(hn::Sub(back, rays.front), rays.world_per_z));
+      if (HWY_UNLIKELY(brick_.has_missing)) {
+        leave_out_missing(corners, cubic, length);
+        scalar_front = cubic.c0;
+        front = integrator_.front_at(scalar_front);
+      }
+      const Float scalar_back = cubic.back();
+      integrate(cubic, {scalar_front, scalar_back, length}, front, sum);
+      scalar_front = scalar_back;
       rays.advance(back);
     }
     store_accumulated(sum, job_, first, count);
   }
 
   /// A cell with a corner that is missing is transparent; behind it the ray sets out anew.
-  HWY_NOINLINE void leave_out_missing(const CellCorners& corners, const LatticeRays& rays, Segments& segment,
-                                      typename Integrator::Front& front) const {
+  static HWY_NOINLINE void leave_out_missing(const CellCorners& corners, CellCubic& cubic, Float& length) {
     const Mask missing = corners.is_missing();
-    const auto present = [&](Float value) { return hn::IfThenZeroElse(missing, value); };
-    segment.scalar_front = present(corners.eval(rays, rays.front));
-    segment.scalar_back = present(segment.scalar_back);
-    segment.length = present(segment.length);
-    front = integrator_.front_at(segment.scalar_front);
+    cubic.clear(missing);
+    length = hn::IfThenZeroElse(missing, length);
   }
 
-  /// Integrates the cubic that the scalar is along a ray, in as many linear pieces as its distance from the chord and
-  /// the steepness of the function ask for.
-  HWY_INLINE void integrate_curve(const CellCorners& corners, const LatticeRays& rays, Float back, Segments& segment,
-                                  typename Integrator::Front& front, Accumulated& sum) const {
-    // A cubic that keeps to its chord at both thirds is its chord.
-    const auto at = [&](float t) { return multiply_add(constant(t), hn::Sub(back, rays.front), rays.front); };
-    const Float first = corners.eval(rays, at(1.0f / 3.0f)), second = corners.eval(rays, at(2.0f / 3.0f));
-    const Float third = hn::Mul(constant(1.0f / 3.0f), hn::Sub(segment.scalar_back, segment.scalar_front));
-    const Float distance = hn::Max(hn::AbsDiff(first, hn::Add(segment.scalar_front, third)),
-                                   hn::AbsDiff(second, hn::Sub(segment.scalar_back, third)));
-    const Float bend = hn::IfThenElseZero(hn::Gt(segment.length, constant(0.0f)), distance);
-    const Mask bent = hn::Gt(hn::Mul(bend, constant(brick_.steepness)), constant(job_.allowed_rate));
+  /// Integrates the cubic in as many linear pieces as its distance from the chord, the steepness of the function and
+  /// what still comes through ask for.
+  HWY_INLINE void integrate(const CellCubic& cubic, const Segments& segment, typename Integrator::Front& front,
+                            Accumulated& sum) const {
+    const Float bend = hn::Mul(sum.transmittance, cubic.bend());
+    const Mask bent = hn::And(hn::Gt(hn::Mul(bend, constant(brick_.steepness)), constant(job_.allowed_rate)),
+                              hn::Gt(segment.length, constant(0.0f)));
     if (HWY_LIKELY(hn::AllFalse(kFloat, bent)))
       integrator_.integrate(segment, front, sum);
     else
-      integrate_pieces(corners, rays, back, bend, segment, front, sum);
+      integrate_pieces(cubic, hn::IfThenElseZero(bent, bend), segment, front, sum);
   }
 
-  HWY_NOINLINE void integrate_pieces(const CellCorners& corners, const LatticeRays& rays, Float back, Float bend,
-                                     const Segments& segment, typename Integrator::Front& front,
-                                     Accumulated& sum) const {
-    const Float low = hn::Min(segment.scalar_front, segment.scalar_back);
-    const Float high = hn::Max(segment.scalar_front, segment.scalar_back);
-    const Float rate = hn::Mul(
-        bend, find_steepness(hn::Sub(low, hn::Mul(bend, constant(1.5f))), multiply_add(bend, constant(1.5f), high)));
-    const Float pieces =
-        hn::Min(hn::Max(hn::Ceil(hn::Sqrt(hn::Mul(rate, constant(1.0f / job_.allowed_rate)))), constant(1.0f)),
-                constant(job_.most_pieces));
+  HWY_NOINLINE void integrate_pieces(const CellCubic& cubic, Float bend, const Segments& segment,
+                                     typename Integrator::Front& front, Accumulated& sum) const {
+    const Float margin = hn::Mul(constant(1.5f), cubic.bend());
+    const Float low = hn::Sub(hn::Min(segment.scalar_front, segment.scalar_back), margin);
+    const Float high = hn::Add(hn::Max(segment.scalar_front, segment.scalar_back), margin);
+    const Float rate = hn::Mul(bend, find_steepness(low, high));
+    const Float wanted = hn::Ceil(hn::Sqrt(hn::Mul(rate, constant(1.0f / job_.allowed_rate))));
+    const Float pieces = hn::Min(hn::Max(wanted, constant(1.0f)), constant(job_.most_pieces));
     const Float share = hn::Div(constant(1.0f), pieces);
-    const Float depth = hn::Sub(back, rays.front);
-    Segments piece{segment.scalar_front, segment.scalar_front, hn::Zero(kFloat)};
-    Float from = hn::Zero(kFloat), number = constant(1.0f);
+    const Float piece_length = hn::Mul(segment.length, share);
+    Segments piece{segment.scalar_front, segment.scalar_front, piece_length};
+    Float number = constant(1.0f);
     for (;;) {
       const Mask last = hn::Ge(number, pieces);
-      const Float to = hn::IfThenElse(last, constant(1.0f), hn::Mul(number, share));
-      piece.scalar_back =
-          hn::IfThenElse(last, segment.scalar_back, corners.eval(rays, multiply_add(depth, to, rays.front)));
-      piece.scalar_back =
-          hn::IfThenElse(hn::Eq(piece.scalar_back, piece.scalar_back), piece.scalar_back, segment.scalar_back);
-      piece.length = hn::Mul(segment.length, hn::Sub(to, from));
+      piece.scalar_back = hn::IfThenElse(last, segment.scalar_back, cubic.eval(hn::Mul(number, share)));
       integrator_.integrate(piece, front, sum);
       if (hn::AllTrue(kFloat, last)) return;
+      piece.length = hn::IfThenZeroElse(last, piece.length);
       piece.scalar_front = piece.scalar_back;
-      from = to;
       number = hn::Add(number, constant(1.0f));
     }
   }
@@ -269,7 +181,7 @@ inline std::uint64_t march_cells(const MarchJob& job, int count) {
   for (int first = 0; first < count; first += static_cast<int>(kLanes)) {
     const int lanes = std::min(count - first, static_cast<int>(kLanes));
     LatticeRays rays(*job.rays, brick, first, lanes);
-    Accumulated sum = load_accumulated(*job.rays, hn::Load(kInt, job.rays->ray + first));
+    Accumulated sum = load_accumulated(*job.rays, first);
     while (!hn::AllFalse(kFloat, rays.alive)) {
       segments += hn::CountTrue(kFloat, rays.alive);
       const Float value = hn::GatherIndex(kFloat, brick.constants, rays.cell);

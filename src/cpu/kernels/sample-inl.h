@@ -52,8 +52,10 @@ constexpr float kThinDensity = 0.05f, kMostDensityPieces = 64.0f;
 HWY_INLINE void composite_densities(const Record& mean, Float length, Accumulated& sum) {
   const Mask valid = hn::Eq(mean.x, mean.x);  // a cell with a corner that is missing is transparent
   const auto over_length = [&](Float density) { return hn::IfThenElseZero(valid, hn::Mul(density, length)); };
+  // Kernels with negative lobes may overshoot what is possible.
   const Float depth = hn::Max(over_length(mean.x), constant(0.0f));
-  const Float emission[3] = {over_length(mean.y), over_length(mean.z), over_length(mean.w)};
+  const auto inside = [&](Float density) { return hn::Min(hn::Max(over_length(density), constant(0.0f)), depth); };
+  const Float emission[3] = {inside(mean.y), inside(mean.z), inside(mean.w)};
   composite_piece(depth, emission, absorbed_ratio(depth), sum);
 }
 
@@ -65,7 +67,7 @@ inline std::uint64_t march_densities(const MarchJob& job, int count) {
   for (int first = 0; first < count; first += static_cast<int>(kLanes)) {
     const int lanes = std::min(count - first, static_cast<int>(kLanes));
     LatticeRays rays(*job.rays, brick, first, lanes, 1);
-    Accumulated sum = load_accumulated(*job.rays, hn::Load(kInt, job.rays->ray + first));
+    Accumulated sum = load_accumulated(*job.rays, first);
     while (!hn::AllFalse(kFloat, rays.alive)) {
       segments += hn::CountTrue(kFloat, rays.alive);
       const DensityCorners corners(brick, rays.cell);
@@ -199,7 +201,7 @@ class RateMarcher {
     hn::Store(samples.depth, kFloat, values[4]);
     hn::Store(samples.number, kFloat, values[5]);
     for (int lane = 0; lane < count; ++lane) {
-      const std::int32_t ray = tile.ray[first + lane];
+      const std::int32_t ray = tile.met.ray[first + lane];
       for (int i = 0; i < Sampler::kChannels; ++i) tile.sample[i][ray] = values[i][lane];
       tile.z_sample[ray] = values[4][lane];
       tile.next_number[ray] = values[5][lane];
@@ -208,8 +210,8 @@ class RateMarcher {
 
   void march(int first, int count) {
     LatticeRays rays(*job_.rays, brick_, first, count, Sampler::kNodesMore);
-    const Int ray = hn::Load(kInt, job_.rays->ray + first);
-    Accumulated sum = load_accumulated(*job_.rays, ray);
+    const Int ray = hn::LoadU(kInt, job_.rays->met.ray + first);
+    Accumulated sum = load_accumulated(*job_.rays, first);
     Samples samples = load(rays, ray);
     while (!hn::AllFalse(kFloat, rays.alive)) {
       const typename Sampler::Corners corners(brick_, rays.cell);

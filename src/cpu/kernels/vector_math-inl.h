@@ -63,9 +63,11 @@ HWY_INLINE hn::Vec<Tag> load_blocks(Tag tag, const FindRecord& record, std::size
 /// gathers.
 HWY_INLINE Record load_records(const void* records, Uint index) {
   HWY_ALIGN std::uint32_t lane[kLanes];
-  hn::Store(index, kUint, lane);
-  const float* base = static_cast<const float*>(records);
-  const auto record = [&](std::size_t i) { return base + 4 * static_cast<std::size_t>(lane[i]); };
+  hn::Store(hn::ShiftLeft<4>(index), kUint, lane);
+  const char* base = static_cast<const char*>(records);
+  const auto record = [&](std::size_t i) {
+    return reinterpret_cast<const float*>(base + static_cast<std::size_t>(lane[i]));
+  };
 #if HWY_TARGET == HWY_SCALAR
   const float* r = record(0);
   return {constant(r[0]), constant(r[1]), constant(r[2]), constant(r[3])};

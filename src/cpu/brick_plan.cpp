@@ -1,0 +1,120 @@
+#include "src/cpu/brick_plan.h"
+
+#include "src/support/threads.h"
+
+#include <algorithm>
+
+namespace tetravox::cpu {
+namespace {
+
+/// Errors of scalars that lie within their bounds hardly ever add up along a whole ray: a ray may be that many times
+/// worse than asked if they all did. Measured: the worst pixel errs by about half of what the tolerance says.
+constexpr double kRatePerTolerance = 10.0;
+
+/// The bound on the distance from a chord holds for the worst place of a brick, and for steps of that many times the
+/// length that are met at the worst angle.
+constexpr float kStridesPerRate = 2.0f;
+
+/// By how many nodes a scalar that is rounded to one counts as being off: a quarter on average, to either side.
+constexpr float kRounding = 0.25f;
+
+/// At a fixed rate of one sample a voxel pictures err by more than that many times the default tolerance anyway, and
+/// less with the square of the rate.
+constexpr double kRoundingAtRate = 20.0;
+
+/// Extinctions that let all but this part of the tolerance through along the longest ray are none.
+constexpr double kHazeOfTolerance = 0.1;
+
+/// The longest step, or the largest lattice cells, of which the field stays as near to its chords as `is_good` asks.
+template <class IsGood>
+void choose_step(const BrickSummaries& bricks, std::size_t brick, const IsGood& is_good, BrickPlan& plan) {
+  // A step of 2^level cells strays as far as a cell with such sides at most; one of a single cell half as far.
+  for (int level = 3; level >= 0; --level) {
+    const float deviation = level > 0 ? bricks.deviation[level][brick] : 0.5f * bricks.deviation[1][brick];
+    if (!is_good(deviation)) continue;
+    plan.level = static_cast<std::uint8_t>(std::max(level - 1, 0));
+    plan.stride = static_cast<std::uint8_t>(1 << (level - plan.level));
+    plan.is_curved = false;
+    return;
+  }
+}
+
+class Planner {
+ public:
+  Planner(const PlanSources& sources, const PlanSettings& settings)
+      : sources_(sources),
+        settings_(settings),
+        allowed_rate_(allowed_rate_of(settings.tolerance, sources.diagonal)),
+        allowed_haze_(static_cast<float>(kHazeOfTolerance * settings.tolerance / sources.diagonal)),
+        has_rate_(settings.samples_per_voxel > 0.0 && !sources.is_constant) {
+    const PreparedGrid& grid = *sources.grid;
+    is_even_ = std::all_of(grid.data.shape.coordinates.begin(), grid.data.shape.coordinates.end(),
+                           [](const std::vector<double>& axis) { return axis.empty(); });
+    const bool is_preintegrated =
+        settings.integrator == Integrator::kAntiderivative || settings.integrator == Integrator::kPartial;
+    strides_at_rate_ = has_rate_ && is_preintegrated && is_even_ && grid.missing_values == 0;
+  }
+
+  BrickPlan plan(std::size_t brick) const {
+    const ValueRange range = range_of(sources_, brick);
+    const auto min = static_cast<float>(range.min), max = static_cast<float>(range.max);
+    BrickPlan plan;
+    if (!(min <= max)) return plan;
+    // Samples that are counted on from the eye go through everything.
+    const bool counts_samples = has_rate_ && !strides_at_rate_;
+    if (!counts_samples && !(sources_.steepness->largest_extinction(min, max) > allowed_haze_)) return plan;
+    plan.level = 0;
+    if (sources_.is_constant || counts_samples || settings_.integrator == Integrator::kPre) return plan;
+
+    const float steepness = sources_.steepness->largest_steepness(min, max);
+    const auto is_good = [&](float deviation, float times = 1.0f) {
+      return steepness == 0.0f || deviation * steepness <= times * allowed_rate_;
+    };
+    if (strides_at_rate_) {
+      plan.stride = 1;
+      const double rate = settings_.samples_per_voxel;
+      plan.is_gentle = is_good(kRounding * sources_.node_width, static_cast<float>(kRoundingAtRate / (rate * rate)));
+      return plan;
+    }
+    plan.is_gentle = is_good(kRounding * sources_.node_width);
+    if (sources_.field->kernel) {
+      plan.is_curved = steepness > 0.0f;
+      return plan;
+    }
+    const BrickSummaries& bricks = sources_.grid->bricks;
+    plan.is_curved = !is_good(bricks.deviation[0][brick]);
+    if (is_even_ && bricks.has_missing[brick] == 0)
+      choose_step(
+          bricks, brick, [&](float deviation) { return is_good(deviation, kStridesPerRate); }, plan);
+    return plan;
+  }
+
+ private:
+  const PlanSources& sources_;
+  const PlanSettings& settings_;
+  float allowed_rate_, allowed_haze_;
+  bool has_rate_, is_even_ = true;
+  bool strides_at_rate_ = false;  ///< a fixed rate that may start anew in each brick
+};
+
+}  // namespace
+
+float allowed_rate_of(double tolerance, double diagonal) {
+  return static_cast<float>(kRatePerTolerance * tolerance / diagonal);
+}
+
+ValueRange range_of(const PlanSources& sources, std::size_t brick) {
+  if (sources.field->kernel) return {sources.field->min[brick], sources.field->max[brick]};
+  return {sources.grid->bricks.min[brick], sources.grid->bricks.max[brick]};
+}
+
+std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSettings& settings) {
+  const Planner planner(sources, settings);
+  std::vector<BrickPlan> plans(sources.grid->bricks.count());
+  support::parallel_chunks(plans.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) plans[i] = planner.plan(i);
+  });
+  return plans;
+}
+
+}  // namespace tetravox::cpu

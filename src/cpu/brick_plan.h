@@ -1,0 +1,54 @@
+#pragma once
+
+/// How each brick of a grid is drawn, before a ray has entered it.
+
+#include "src/cpu/filtered_field.h"
+#include "src/optics/steepness_table.h"
+#include "tetravox/grid.h"
+#include "tetravox/render.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tetravox::cpu {
+
+struct BrickPlan {
+  static constexpr std::uint8_t kTransparent = 0xFF;
+
+  std::uint8_t level = kTransparent;  ///< lattice cells of 2^level cells a side
+  std::uint8_t stride = 0;            ///< lattice cells a step; 0: from cell to cell
+  bool is_curved = false;             ///< whether rays in its cells may be bent too much to be chords
+  bool is_gentle = false;             ///< whether scalars may be rounded to nodes of the table
+};
+
+/// What plans depend on beside data and function.
+struct PlanSettings {
+  Filter filter;
+  Integrator integrator = Integrator::kAntiderivative;
+  double tolerance = 0.002;
+  double samples_per_voxel = 0.0;
+
+  bool operator==(const PlanSettings&) const = default;
+};
+
+/// Data and function.
+struct PlanSources {
+  const PreparedGrid* grid = nullptr;  ///< as it is drawn: `FilteredField::middles` where there are such
+  const FilteredField* field = nullptr;
+  const optics::SteepnessTable* steepness = nullptr;
+  float node_width = 0.0f;   ///< stored scalars from node to node of the antiderivatives' table
+  double diagonal = 1.0;     ///< world length of the longest ray
+  bool is_constant = false;  ///< whether the scalar is constant in each cell
+};
+
+/// Error in colour for one unit of world length that segments may have.
+float allowed_rate_of(double tolerance, double diagonal);
+
+/// Range of the field in a brick; min > max where it is missing throughout.
+ValueRange range_of(const PlanSources& sources, std::size_t brick);
+
+/// One plan a brick. Microseconds for a thousand bricks, on all cores.
+std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSettings& settings);
+
+}  // namespace tetravox::cpu
