@@ -353,6 +353,7 @@ TEST_P(Grids, AConstantIsConstantWithEveryFilter) {
           Filter{FilterKind::kCatmullRom}, Filter{FilterKind::kMitchell}, Filter{FilterKind::kLanczos, 2},
           Filter{FilterKind::kLanczos, 8}}) {
       SCOPED_TRACE(name_of(filter));
+      if (GetParam() == Integrator::kPre && filter.kind == FilterKind::kInterpolatingBspline) continue;  // refused
       // Cell data are points at the middles of their cells to kernels.
       Vector3 lower = kLower, upper = kUpper;
       const double cells[3] = {10, 5, 8};

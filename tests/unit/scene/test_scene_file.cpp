@@ -31,6 +31,12 @@ void expect_same(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.data.array.component, b.data.array.component);
   EXPECT_EQ(a.data.time.index, b.data.time.index);
   EXPECT_EQ(a.data.time.value, b.data.time.value);
+  EXPECT_EQ(a.data.raw.dimensions, b.data.raw.dimensions);
+  EXPECT_EQ(a.data.raw.type, b.data.raw.type);
+  EXPECT_EQ(a.data.raw.components, b.data.raw.components);
+  EXPECT_EQ(a.data.raw.spacing, b.data.raw.spacing);
+  EXPECT_EQ(a.data.raw.is_big_endian, b.data.raw.is_big_endian);
+  EXPECT_EQ(a.data.raw.header_bytes, b.data.raw.header_bytes);
   ASSERT_EQ(a.transfer_function.has_value(), b.transfer_function.has_value());
   if (a.transfer_function) {
     EXPECT_EQ(a.transfer_function->absorption, b.transfer_function->absorption);
@@ -57,9 +63,25 @@ void expect_same(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.settings.height, b.settings.height);
   EXPECT_EQ(a.settings.source, b.settings.source);
   EXPECT_EQ(a.settings.integrator, b.settings.integrator);
+  EXPECT_EQ(a.settings.filter, b.settings.filter);
+  EXPECT_EQ(a.settings.samples_per_voxel, b.settings.samples_per_voxel);
   EXPECT_EQ(a.settings.tolerance, b.settings.tolerance);
   EXPECT_EQ(a.settings.samples, b.settings.samples);
   EXPECT_EQ(a.settings.use_early_ray_termination, b.settings.use_early_ray_termination);
+}
+
+/// A layout of bytes with about half of its keys.
+RawLayout random_layout(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const auto below = [&](double end) { return static_cast<std::uint32_t>(unit(random) * end); };
+  RawLayout raw;
+  if (unit(random) < 0.5) raw.dimensions = {1 + below(1e6), 1 + below(1e3), 1 + below(10)};
+  if (unit(random) < 0.5) raw.type = static_cast<ScalarType>(below(10));
+  if (unit(random) < 0.5) raw.components = 1 + static_cast<int>(below(4));
+  if (unit(random) < 0.5) raw.spacing = {1e-9 + unit(random), 1.0 / 3, 1e12 * (1e-9 + unit(random))};
+  if (unit(random) < 0.5) raw.is_big_endian = unit(random) < 0.5;
+  if (unit(random) < 0.5) raw.header_bytes = below(4e9);
+  return raw;
 }
 
 Scene random_scene(std::mt19937& random) {
@@ -67,6 +89,7 @@ Scene random_scene(std::mt19937& random) {
   const auto number = [&] { return (unit(random) - 0.5) * std::pow(10.0, exponent(random)); };
   Scene scene;
   scene.data.file = "dir \"x\"/\xC3\xA9\t.vtu";
+  scene.data.raw = random_layout(random);
   if (unit(random) < 0.3) scene.data.solution_file = "q.bin";
   if (unit(random) < 0.7) scene.data.array.name = "Density \\ (kg)";
   if (unit(random) < 0.7) scene.data.array.association = unit(random) < 0.5 ? Association::kPoint : Association::kCell;
@@ -99,7 +122,12 @@ Scene random_scene(std::mt19937& random) {
   scene.background = {unit(random), unit(random), unit(random)};
   scene.settings.width = 1 + static_cast<int>(unit(random) * 16383);
   scene.settings.height = 1 + static_cast<int>(unit(random) * 16383);
-  scene.settings.integrator = unit(random) < 0.5 ? Integrator::kPartial : Integrator::kPost;
+  scene.settings.integrator = static_cast<Integrator>(static_cast<int>(unit(random) * 4));
+  if (unit(random) < 0.7) scene.settings.source = unit(random) < 0.5 ? Source::kWalk : Source::kMarch;
+  scene.settings.filter.kind = static_cast<FilterKind>(static_cast<int>(unit(random) * 7));
+  if (scene.settings.filter.kind == FilterKind::kLanczos)
+    scene.settings.filter.radius = 2 + static_cast<int>(unit(random) * 7);
+  if (unit(random) < 0.5) scene.settings.samples_per_voxel = 64.0 * (1.0 - unit(random));
   scene.settings.tolerance = 1e-6 + 0.9 * unit(random);
   scene.settings.samples = 1 + static_cast<int>(unit(random) * 4095);
   scene.settings.use_early_ray_termination = unit(random) < 0.5;
@@ -143,6 +171,56 @@ TEST(SceneFile, ReadsEverything) {
   EXPECT_EQ(scene.settings.integrator, Integrator::kPartial);
   EXPECT_EQ(scene.settings.samples, 5);
   EXPECT_FALSE(scene.settings.use_early_ray_termination);
+}
+
+TEST(SceneFile, ReadsWhatGridsNeed) {
+  const Scene scene = parse(R"({"tetravox":1,
+    "data":{"file":"a.raw","dimensions":[4,5,6],"scalar_type":"uint16","components":3,"spacing":[1,1,2.5],
+            "big_endian":true,"header_bytes":512},
+    "render":{"source":"march","integrator":"pre","filter":"lanczos=4","samples_per_voxel":2.5}})");
+  const RawLayout& raw = scene.data.raw;
+  EXPECT_EQ(raw.dimensions, (std::array<std::uint32_t, 3>{4, 5, 6}));
+  EXPECT_EQ(raw.type, ScalarType::kUint16);
+  EXPECT_EQ(raw.components, 3);
+  EXPECT_EQ(raw.spacing, (std::array<double, 3>{1, 1, 2.5}));
+  EXPECT_EQ(raw.is_big_endian, true);
+  EXPECT_EQ(raw.header_bytes, 512u);
+  EXPECT_EQ(scene.settings.source, Source::kMarch);
+  EXPECT_EQ(scene.settings.integrator, Integrator::kPre);
+  EXPECT_EQ(scene.settings.filter, (Filter{FilterKind::kLanczos, 4}));
+  EXPECT_EQ(scene.settings.samples_per_voxel, 2.5);
+
+  const Scene open = parse(kHead + "}");
+  EXPECT_FALSE(open.settings.source);
+  EXPECT_EQ(open.settings.filter, Filter{});
+  EXPECT_EQ(open.settings.samples_per_voxel, 0.0);
+  EXPECT_FALSE(open.data.raw.dimensions || open.data.raw.type || open.data.raw.spacing || open.data.raw.is_big_endian);
+}
+
+TEST(SceneFile, SaysWhatIsWrongAboutGrids) {
+  const auto expect_bad_data = [](const std::string& members, const char* where, const char* what) {
+    expect_bad(R"({"tetravox":1,"data":{"file":"a.raw",)" + members + "}}", where, what);
+  };
+  expect_bad_data(R"("dimension":[1,1,1])", "data", "did you mean 'dimensions'");
+  expect_bad_data(R"("dimensions":[1,1])", "data.dimensions", "three numbers");
+  expect_bad_data(R"("dimensions":[4,0,4])", "data.dimensions[1]", "whole number");
+  expect_bad_data(R"("dimensions":[4,4,4294967296])", "data.dimensions[2]", "whole number");
+  expect_bad_data(R"("scalar_type":"byte")", "data.scalar_type", "uint8");
+  expect_bad_data(R"("components":5)", "data.components", "4");
+  expect_bad_data(R"("spacing":[1,1,0])", "data.spacing", "above 0");
+  expect_bad_data(R"("spacing":[1,1])", "data.spacing", "");
+  expect_bad_data(R"("big_endian":1)", "data.big_endian", "true or false");
+  expect_bad_data(R"("header_bytes":-1)", "data.header_bytes", "whole number");
+  expect_bad(kHead + R"(,"render":{"filter":"box"}})", "render.filter", "catmull-rom");
+  expect_bad(kHead + R"(,"render":{"filter":"lanczos=9"}})", "render.filter", "lanczos");
+  expect_bad(kHead + R"(,"render":{"samples_per_voxel":0}})", "render.samples_per_voxel", "64");
+  expect_bad(kHead + R"(,"render":{"samples_per_voxel":65}})", "render.samples_per_voxel", "64");
+}
+
+TEST(SceneFile, WritesOnlyWhatTheDataNeeds) {
+  const std::string text = format_scene(parse(kHead + "}"));
+  for (const char* key : {"source", "filter", "samples_per_voxel", "dimensions", "header_bytes"})
+    EXPECT_EQ(text.find(key), std::string::npos) << key;
 }
 
 TEST(SceneFile, ReadsTheScenesOfTheExactImages) {
@@ -204,7 +282,7 @@ TEST(SceneFile, SaysWhatIsWrongAndWhere) {
   expect_bad(kHead + R"(,"camera":{"position":[0,0,1],"focal_point":[0,0,0],"view_angle":190}})", "camera",
              "view_angle");
   expect_bad(kHead + R"(,"render":{"integrator":"magic"}})", "render.integrator", "antiderivative");
-  expect_bad(kHead + R"(,"render":{"source":"magic"}})", "render.source", "walk");
+  expect_bad(kHead + R"(,"render":{"source":"magic"}})", "render.source", "march");
   expect_bad(kHead + R"(,"render":{"tolerance":0}})", "render.tolerance", "[1e-7, 1]");
   expect_bad(kHead + R"(,"render":{"samples":5000}})", "render.samples", "4096");
   expect_bad(kHead + R"(,"render":{"early_ray_termination":1}})", "render.early_ray_termination", "true or false");
