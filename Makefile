@@ -9,12 +9,12 @@ TETRAVOX := $(BUILD)/bin/tetravox
 .PHONY: help demo test bench build install format check gallery clean
 
 help:
-	@echo "make demo      draw three embedded datasets into out/demo"
+	@echo "make demo      draw four embedded datasets into out/demo"
 	@echo "make test      build everything and run all tests"
-	@echo "make bench     measure against VTK: tables in out/bench (QUICK=1: two minutes)"
+	@echo "make bench     measure against VTK: tables in out/bench (QUICK=1: one round of each)"
 	@echo "make build     build the tool: $(TETRAVOX)"
 	@echo "make install   install tool, library and CMake package (PREFIX=$(PREFIX))"
-	@echo "make gallery   draw the pictures of the README again"
+	@echo "make gallery   draw the pictures of README and docs again, measure those of docs/methods"
 	@echo "make format    format all C++"
 	@echo "make check     formatting and include rules"
 	@echo "make clean     remove build/release and out"
@@ -34,6 +34,8 @@ demo: build
 
 gallery: build
 	@tools/draw_pictures.sh gallery $(TETRAVOX) docs/images
+	@tools/draw_pictures.sh methods $(TETRAVOX) docs/methods/images
+	@python3 tools/measure_pictures.py $(TETRAVOX) docs/methods/classification.md
 
 test:
 	@tools/install_dependencies.sh build test
@@ -44,7 +46,7 @@ test:
 bench:
 	@tools/install_dependencies.sh build bench
 	@$(CONFIGURE) -DTETRAVOX_WITH_BENCH=ON
-	@cmake --build --preset release --parallel $(JOBS) --target product export_builtin
+	@cmake --build --preset release --parallel $(JOBS) --target product export_dataset
 	@/usr/bin/python3 bench/run.py --build $(BUILD) $(if $(QUICK),--quick) $(if $(README),--readme $(README))
 
 install:

@@ -8,7 +8,8 @@ import time
 
 from tool import Failed
 
-PEERS = ("bunyk", "pt")
+MESH_PEERS = ("bunyk", "pt")
+GRID_PEERS = ("fixed", "gpu")
 LONGEST_FRAME = 120.0  # seconds
 
 

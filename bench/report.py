@@ -2,6 +2,9 @@
 import os
 import platform
 
+from grid_workloads import FAST
+from peers import GRID_PEERS, MESH_PEERS
+
 BEGIN, END = "<!-- bench: begin (make bench README=README.md) -->", "<!-- bench: end -->"
 
 
@@ -42,28 +45,33 @@ def error(value):
     return f"{value['max']:.1e} ({value['rms']:.1e})" if "max" in value else "SKIPPED"
 
 
+def own_row(names, own, ratios):
+    """A row of tetravox beside VTK: cells `names`, an empty one for each of the ratios, measures."""
+    times = own["seconds"]
+    return [*names, seconds(times["frame"]), *("" for _ in ratios), error(own["error"]), seconds(times["read"]),
+            seconds(times["prepare"]) + " / " + seconds(times["first_frame"]), megabytes(tool_memory(own))]
+
+
+def peer_row(names, peer, other, ratios):
+    if "skipped" in other:
+        return [*names, *skipped_row(other, peer, 6 + len(ratios))]
+    return [*names, f"VTK {other['vtk']} {peer}", seconds(other["frame"]), *(f"{other[key]:.1f}×" for key in ratios),
+            error(other["error"]), seconds(other["read"]), "– / " + seconds(other["first_frame"]),
+            megabytes(other["peak_rss"])]
+
+
 def rendering_table(rows):
     header = ["scene", "size", "method", "frame", "tetravox is faster by", "largest error (RMS)", "read",
               "prepare / first frame", "peak memory"]
+    ratios = ("ratio",)
     lines = []
     for row in rows:
-        name, size = row["workload"], f"{row['size']}²"
+        names = [row["workload"], f"{row['size']}²"]
         if "skipped" in row:
-            lines.append(skipped_row(row, name, len(header)))
+            lines.append(skipped_row(row, names[0], len(header)))
             continue
-        own = row["tetravox"]
-        times = own["seconds"]
-        lines.append([name, size, "**tetravox**", seconds(times["frame"]), "", error(own["error"]),
-                      seconds(times["read"]), seconds(times["prepare"]) + " / " + seconds(times["first_frame"]),
-                      megabytes(tool_memory(own))])
-        for peer in ("bunyk", "pt"):
-            other = row[peer]
-            if "skipped" in other:
-                lines.append([name, size, *skipped_row(other, peer, len(header) - 2)])
-                continue
-            lines.append([name, size, f"VTK {other['vtk']} {peer}", seconds(other["frame"]),
-                          f"{other['ratio']:.1f}×", error(other["error"]), seconds(other["read"]),
-                          "– / " + seconds(other["first_frame"]), megabytes(other["peak_rss"])])
+        lines.append(own_row([*names, "**tetravox**"], row["tetravox"], ratios))
+        lines += [peer_row(names, peer, row[peer], ratios) for peer in MESH_PEERS]
     return table(header, lines)
 
 
@@ -84,7 +92,7 @@ def speed_table(rows):
 
 
 def exactness_table(rows):
-    methods = ["antiderivative", "partial", "bunyk", "pt"]
+    methods = ["antiderivative", "partial", *MESH_PEERS]
     lines = []
     for row in rows:
         if "skipped" in row:
@@ -109,6 +117,39 @@ def scaling_table(rows):
     return table(header, lines)
 
 
+def grid_table(rows):
+    header = ["scene", "method", "frame", "tetravox is faster by", "fast is faster by",
+              "largest error (RMS)", "read", "prepare / first frame", "peak memory"]
+    ratios = ("ratio", "fast_ratio")
+    lines = []
+    for row in rows:
+        name = row["workload"]
+        if "skipped" in row:
+            lines.append(skipped_row(row, name, len(header)))
+            continue
+        lines.append(own_row([name, "**tetravox**"], row["tetravox"], ratios))
+        lines.append(own_row([name, "**tetravox**, fast"], row["fast"], ratios))
+        lines += [peer_row([name], peer, row[peer], ratios) for peer in GRID_PEERS]
+    return table(header, lines)
+
+
+def grid_scaling_table(rows):
+    header = ["points", "frame", "segments", "segments a ray", "ns a segment", "prepare", "new transfer function",
+              "values", "summaries", "peak memory"]
+    lines = []
+    for row in rows:
+        name = f"{row['size']}³"
+        if "skipped" in row:
+            lines.append(skipped_row(row, name, len(header)))
+            continue
+        times, segments, parts = row["seconds"], row["segments"], row["bytes"]
+        lines.append([name, seconds(times["frame"]), f"{segments / 1e6:.1f} M", f"{segments / row['rays']:.0f}",
+                      f"{times['frame'] / segments * 1e9:.1f}", seconds(times["prepare"]),
+                      f"{times['transfer_function'] * 1e3:.2f} ms", f"{(parts['grid'] - parts['summaries']) / 2**20:.2f} MiB",
+                      f"{parts['summaries'] / 2**20:.2f} MiB", megabytes(tool_memory(row))])
+    return table(header, lines)
+
+
 def startup_table(rows):
     lines = []
     for row in rows:
@@ -125,15 +166,22 @@ def tables(results):
     return "\n\n".join([
         f"Measured on {where['cores']} cores, {where['processor']}. The programs take turns; times and ratios are medians over"
         " the rounds.",
-        "**Beside VTK.** Errors in colour, over black, against exact pre-integration (`partial`) at the same size; VTK's"
-        " pictures have 8 bits a channel, which alone errs by 2.0e-3. Memory of tetravox is the tool's peak plus its reader's.",
+        "**Meshes beside VTK.** Errors in colour, over black, against exact pre-integration (`partial`) at the same"
+        " size; VTK's pictures have 8 bits a channel, which alone errs by 2.0e-3. Memory of tetravox is the tool's peak"
+        " plus its reader's.",
         rendering_table(results["rendering"]),
-        "**Speed.** A segment is one ray in one tetrahedron.",
+        "**Grids beside VTK.** 512², errors against the exact picture (`partial`, tolerance 1e-6). VTK takes one sample"
+        f" a voxel; tetravox what its tolerance asks by default, and fast: `{' '.join(FAST)}`.",
+        grid_table(results["grids"]),
+        "**Speed on meshes.** A segment is one ray in one tetrahedron.",
         speed_table(results["rendering"]),
-        "**Exactness.** Largest error (RMS) against pictures of an independent integrator in double precision, 256².",
+        "**Exactness on meshes.** Largest error (RMS) against pictures of an independent integrator in double precision, 256².",
         exactness_table(results["exactness"]),
-        "**Scaling.** `builtin:buckyball?cells=N`, 512².",
+        "**More cells.** `builtin:buckyball?cells=N`, 512².",
         scaling_table(results["scaling"]),
+        "**More points.** `builtin:turbulence?size=N`, a byte each, 512². A segment is one ray in one cell, or in a"
+        " block of cells that is drawn as one.",
+        grid_scaling_table(results["grid_scaling"]),
         "**Start.**",
         startup_table(results["startup"]),
     ]) + "\n"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures tetravox, beside VTK's ray caster (bunyk) and projected tetrahedra (pt), in one run.
+"""Measures tetravox beside VTK's mappers for meshes (bunyk, pt) and for images (fixed, gpu), in one run.
 
     bench/run.py [--build build/release] [--shared DIR] [--out out/bench] [--quick] [--readme README.md]
 
@@ -12,6 +12,7 @@ import os
 import shutil
 import sys
 
+import grid_workloads
 import peers
 import report
 import workloads
@@ -24,7 +25,7 @@ def parse_arguments():
     parser.add_argument("--build", default=os.path.join(root, "build", "release"), help="build directory")
     parser.add_argument("--shared", help="directory with data/ and truth/ (default: the build's TETRAVOX_SHARED_DIR)")
     parser.add_argument("--out", default=os.path.join(root, "out", "bench"), help="directory of the results")
-    parser.add_argument("--quick", action="store_true", help="512x512 only, one round, small scaling table")
+    parser.add_argument("--quick", action="store_true", help="512x512 only, one round, small scaling tables")
     parser.add_argument("--readme", help="file whose block between the bench markers is replaced by the tables")
     options = parser.parse_args()
     options.shared = os.path.abspath(options.shared or shared_directory(options.build))
@@ -53,6 +54,8 @@ def main():
             "rendering": workloads.measure_rendering(tool, display, options),
             "exactness": workloads.measure_exactness(tool, display, options),
             "scaling": workloads.measure_scaling(tool, options),
+            "grids": grid_workloads.measure_rendering(tool, display, options),
+            "grid_scaling": grid_workloads.measure_scaling(tool, options),
             "startup": workloads.measure_startup(tool, options),
         }
     with open(os.path.join(options.out, "results.json"), "w") as file:

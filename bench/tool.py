@@ -12,7 +12,7 @@ class Failed(Exception):
 class Tool:
     def __init__(self, build, work):
         self.program = os.path.join(build, "bin", "tetravox")
-        self.exporter = os.path.join(build, "bin", "export_builtin")
+        self.exporter = os.path.join(build, "bin", "export_dataset")
         self.work = work
         if not os.path.exists(self.program):
             raise SystemExit(f"{self.program} is missing: run 'make build'")
@@ -37,8 +37,8 @@ class Tool:
         with open(statistics) as file:
             return json.load(file)
 
-    def export(self, builtin, name):
-        """Path of the embedded dataset as VTU."""
+    def export(self, dataset, name):
+        """Path of an embedded dataset or a file as VTU or VTI, by the ending of `name`."""
         path = self.path(name)
-        self.run([self.exporter, builtin, path])
+        self.run([self.exporter, dataset, path])
         return path

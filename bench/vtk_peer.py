@@ -1,6 +1,6 @@
-"""Draws a scene with one of VTK's mappers for meshes, frame by frame as told on standard input.
+"""Draws a scene with one of VTK's mappers, frame by frame as told on standard input.
 
-    vtk_peer.py SCENE.json bunyk|pt WIDTH HEIGHT
+    vtk_peer.py SCENE.json bunyk|pt|fixed|gpu WIDTH HEIGHT
 
 Answers each line with one line of JSON:
     frame         draws the scene                     {"seconds": .., "peak_rss": ..}
@@ -20,45 +20,53 @@ from vtk.util.numpy_support import vtk_to_numpy
 MAPPERS = {
     "bunyk": vtk.vtkUnstructuredGridVolumeRayCastMapper,  # Bunyk, Kaufman, Silva 1997
     "pt": vtk.vtkProjectedTetrahedraMapper,  # Shirley and Tuchman 1990, on OpenGL
+    "fixed": vtk.vtkFixedPointVolumeRayCastMapper,  # images, samples along rays, all cores
+    "gpu": vtk.vtkGPUVolumeRayCastMapper,  # images, samples along rays, on OpenGL
 }
+READERS = {".vtu": vtk.vtkXMLUnstructuredGridReader, ".vti": vtk.vtkXMLImageDataReader}
 
 
-def read_mesh(path, array):
-    reader = vtk.vtkXMLUnstructuredGridReader()
+def read_dataset(path, array):
+    reader = READERS[os.path.splitext(path)[1]]()
     reader.SetFileName(path)
     reader.Update()
-    mesh = reader.GetOutput()
+    dataset = reader.GetOutput()
     if array:
-        mesh.GetPointData().SetActiveScalars(array)
-    return mesh
+        dataset.GetPointData().SetActiveScalars(array)
+    return dataset
 
 
 def make_property(function):
-    """VTK's mappers for meshes take the opacity function's value as an extinction where the unit distance is 1."""
-    color, extinction = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
+    """Mappers for images take opacities for the unit distance, as scenes mean them. Those for meshes take the opacity
+    function's value as an extinction where the unit distance is 1."""
+    unit_distance = function.get("unit_distance")
+    absorption = "opacity" if unit_distance else "extinction"
+    color, opacity = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
     last = None
     for point in function["points"]:
         value = point["value"]
         if last is not None and value <= last:
             value = float(np.nextafter(np.float32(last), np.float32(np.inf)))  # a step: VTK keeps one point a value
         color.AddRGBPoint(value, *point["color"])
-        extinction.AddPoint(value, point["extinction"])
+        opacity.AddPoint(value, point[absorption])
         last = value
     volume_property = vtk.vtkVolumeProperty()
     volume_property.SetColor(color)
-    volume_property.SetScalarOpacity(extinction)
-    volume_property.SetScalarOpacityUnitDistance(1.0)
+    volume_property.SetScalarOpacity(opacity)
+    volume_property.SetScalarOpacityUnitDistance(unit_distance or 1.0)
     volume_property.SetInterpolationTypeToLinear()
     volume_property.ShadeOff()
     return volume_property
 
 
-def make_mapper(name, mesh):
+def make_mapper(name, dataset):
     mapper = MAPPERS[name]()
-    mapper.SetInputData(mesh)
-    if name == "bunyk":  # one ray a pixel in every frame
+    mapper.SetInputData(dataset)
+    if name != "pt":  # one ray a pixel in every frame
         mapper.SetAutoAdjustSampleDistances(False)
         mapper.SetImageSampleDistance(1.0)
+    if dataset.IsA("vtkImageData"):  # one sample a voxel
+        mapper.SetSampleDistance(sum(dataset.GetSpacing()) / 3)
     return mapper
 
 
@@ -89,10 +97,10 @@ class Peer:
             scene = json.load(file)
         start = time.perf_counter()
         path = os.path.join(os.path.dirname(scene_path), scene["data"]["file"])
-        mesh = read_mesh(path, scene["data"].get("array"))
+        dataset = read_dataset(path, scene["data"].get("array"))
         self.read_seconds = time.perf_counter() - start
         volume = vtk.vtkVolume()
-        volume.SetMapper(make_mapper(mapper, mesh))
+        volume.SetMapper(make_mapper(mapper, dataset))
         volume.SetProperty(make_property(scene["transfer_function"]))
         self.size = width, height
         self.window, self.camera = make_window(volume, scene, width, height)

@@ -1,4 +1,4 @@
-"""What is measured: named workloads, the exact pictures they are held against, the sizes of the scaling table."""
+"""What is measured of meshes, and how: named workloads, the exact pictures they are held against, sizes for scaling."""
 import json
 import os
 import statistics
@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 
-from peers import PEERS, Peer
+from peers import MESH_PEERS, Peer
 from tool import Failed
 
 # Name -> dataset, for a scene of the same name in bench/scenes.
@@ -93,13 +93,14 @@ class PeerRun:
         except Failed as error:
             self.fail(error)
 
-    def finish(self, path, exact, own_times=()):
-        """The result; `ratio` is the median over the rounds, so that a slow moment counts for both or not at all."""
+    def finish(self, path, exact, **own_times):
+        """The result, with a ratio for each of the tool's times by their key: the median over the rounds, so that a
+        slow moment counts for both or not at all."""
         if self.peer:
             self.peer.ask("image " + path)
             self.result.update(frame=statistics.median(self.times), error=difference(path, exact))
-            if own_times:
-                self.result["ratio"] = statistics.median(a / b for a, b in zip(self.times, own_times))
+            for key, times in own_times.items():
+                self.result[key] = statistics.median(a / b for a, b in zip(self.times, times))
             self.peer.close()
         return self.result
 
@@ -110,24 +111,26 @@ def compare(tool, display, scene, peer_scene, size, rounds, exact=None):
     if exact is None:
         tool.render(scene, *resolution, "--integrator", "partial", output="exact.npy")
         exact = np.load(tool.path("exact.npy"))
-    peers = {name: PeerRun(display, name, peer_scene, size) for name in PEERS}
+    peers = {name: PeerRun(display, name, peer_scene, size) for name in MESH_PEERS}
     own = []
     for _ in range(rounds):
         own.append(tool.render(scene, *resolution, "--repeat", str(REPEATS)))
         for peer in peers.values():
             peer.frame()
-    row = {
-        "size": size,
-        "tetravox": dict(own[-1], seconds=median_seconds(own), error=difference(tool.path("picture.npy"), exact)),
-    }
-    own_times = [run["seconds"]["frame"] for run in own]
-    row.update({name: peer.finish(tool.path("peer.npy"), exact, own_times) for name, peer in peers.items()})
+    row = {"size": size, "tetravox": summary(own, tool.path("picture.npy"), exact)}
+    for name, peer in peers.items():
+        row[name] = peer.finish(tool.path("peer.npy"), exact, ratio=frame_seconds(own))
     return row
 
 
-def median_seconds(runs):
-    """Each of the tool's times as the median over the runs."""
-    return {key: statistics.median(run["seconds"][key] for run in runs) for key in runs[0]["seconds"]}
+def summary(runs, picture, exact):
+    """The tool's statistics, each time the median over the runs, and the error of its picture."""
+    seconds = {key: statistics.median(run["seconds"][key] for run in runs) for key in runs[0]["seconds"]}
+    return dict(runs[-1], seconds=seconds, error=difference(picture, exact))
+
+
+def frame_seconds(runs):
+    return [run["seconds"]["frame"] for run in runs]
 
 
 def measure_rendering(tool, display, options):
@@ -160,7 +163,7 @@ def measure_exactness(tool, display, options):
             for integrator in ("antiderivative", "partial"):
                 tool.render(scene, "--integrator", integrator)
                 row[integrator] = difference(tool.path("picture.npy"), exact)
-            for mapper in PEERS:
+            for mapper in MESH_PEERS:
                 peer = PeerRun(display, mapper, scene, exact.shape[0])
                 peer.frame()
                 result = peer.finish(tool.path("peer.npy"), exact)

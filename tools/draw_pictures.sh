@@ -1,33 +1,68 @@
 #!/usr/bin/env bash
-# Draws a set of pictures of embedded datasets.
+# Draws a set of pictures of embedded datasets, from the root of the repository.
 #
-#   tools/draw_pictures.sh demo|gallery TOOL DIRECTORY
+#   tools/draw_pictures.sh demo|gallery|methods TOOL DIRECTORY
 set -eu
 
 ball='--camera-position 2.6,-3.4,1.9 --camera-focal-point 0,0,0 --camera-view-up 0,0,1 --camera-view-angle'
 above='--camera-position 1.1,-4,11 --camera-focal-point 1.2,1.5,0.4 --camera-view-up 0,0,1 --camera-view-angle'
 beside='--camera-position 1.1,-8,10 --camera-focal-point 1.1,1.55,0.4 --camera-view-up 0,0,1 --camera-parallel-scale'
+atom='--camera-position -50,-80,30 --camera-focal-point 0,0,0 --camera-view-up 0,0,1 --camera-view-angle'
+cloud='builtin:turbulence?size=64&type=float32&seed=5 --filter bspline --transfer-function inferno:peaks=6 --range 0.4,0.9 --unit-distance 0.006'
+
+# Of docs/methods/classification.md: the options that its figures have in common.
+green="--resolution 250,250 --transfer-function docs/methods/random-green.json $atom 17.5"
+shells="--resolution 180,180 --transfer-function rainbow:peaks=4 --unit-distance 0.5 $atom 18"
+waves='--resolution 190,190 --transfer-function coolwarm:peaks=1 --range 0,1 --unit-distance 0.012 --camera-position -1.9,-3,4.6 --camera-focal-point 0,0,-0.05 --camera-view-up 0,0,1 --camera-view-angle 22'
 
 # Each line: set, picture, what `tetravox render` is given.
 pictures="
 demo     buckyball         builtin:buckyball?cells=2000000 --transfer-function inferno:peaks=4 --range 0.05,1.04 --unit-distance 0.016 $ball 23
 demo     duct              builtin:duct?cells=300000 --array speed --transfer-function turbo:peaks=12 $above 31
 demo     sphere            builtin:sphere?cells=300000 --transfer-function viridis:peaks=4 --unit-distance 0.07 $ball 27
+demo     turbulence        $cloud
 gallery  buckyball         builtin:buckyball?cells=2000000 --transfer-function inferno:peaks=4 --range 0.05,1.04 --unit-distance 0.016 $ball 23
 gallery  duct-speed        builtin:duct?cells=300000 --array speed --transfer-function turbo:peaks=12 $above 33
 gallery  sphere            builtin:sphere?cells=300000 --transfer-function viridis:peaks=4 --unit-distance 0.07 $ball 27
 gallery  buckyball-ramp    builtin:buckyball?cells=2000000 --transfer-function plasma:ramp --range 0.15,1.04 --unit-distance 0.01 $ball 23
 gallery  duct-pressure     builtin:duct?cells=300000 --array pressure --transfer-function coolwarm:peaks=15 --range -1.2,0.548 $beside 3.5
 gallery  duct-volume       builtin:duct?cells=6000 --array volume --transfer-function viridis:constant=0.3 --log $above 34
+gallery  turbulence        builtin:turbulence?size=64&type=float32&seed=4 --filter bspline --transfer-function viridis:peaks=5 --range 0.5,0.9 --unit-distance 0.005
+gallery  hydrogen          builtin:hydrogen?size=64&type=float32 --transfer-function rainbow:peaks=6 --unit-distance 0.5 $atom 19
+gallery  marschner-lobb    builtin:marschner-lobb?size=96 --filter bspline-interpolating --transfer-function plasma:peaks=1 --range 0,1 --unit-distance 0.006 --camera-elevation 20
+methods  green-pre         builtin:hydrogen $green --classification pre
+methods  green-post        builtin:hydrogen $green --classification post --samples-per-voxel 1
+methods  green-rate-1      builtin:hydrogen $green --samples-per-voxel 1
+methods  green             builtin:hydrogen $green
+methods  shells-post-0.5   builtin:hydrogen?size=32 $shells --classification post --samples-per-voxel 0.5
+methods  shells-post-1     builtin:hydrogen?size=32 $shells --classification post --samples-per-voxel 1
+methods  shells-post-2     builtin:hydrogen?size=32 $shells --classification post --samples-per-voxel 2
+methods  shells-post-4     builtin:hydrogen?size=32 $shells --classification post --samples-per-voxel 4
+methods  shells-rate-0.5   builtin:hydrogen?size=32 $shells --samples-per-voxel 0.5
+methods  shells-rate-1     builtin:hydrogen?size=32 $shells --samples-per-voxel 1
+methods  shells-rate-2     builtin:hydrogen?size=32 $shells --samples-per-voxel 2
+methods  shells-rate-4     builtin:hydrogen?size=32 $shells --samples-per-voxel 4
+methods  waves             builtin:marschner-lobb?size=321 $waves
+methods  waves-nearest     builtin:marschner-lobb $waves --filter nearest
+methods  waves-linear      builtin:marschner-lobb $waves
+methods  waves-bspline     builtin:marschner-lobb $waves --filter bspline
+methods  waves-interpolating builtin:marschner-lobb $waves --filter bspline-interpolating
+methods  waves-catmull-rom builtin:marschner-lobb $waves --filter catmull-rom
+methods  waves-mitchell    builtin:marschner-lobb $waves --filter mitchell
+methods  waves-lanczos     builtin:marschner-lobb $waves --filter lanczos=4
 "
 
-[ $# -eq 3 ] || { echo "usage: tools/draw_pictures.sh demo|gallery TOOL DIRECTORY" >&2; exit 2; }
+[ $# -eq 3 ] || { echo "usage: tools/draw_pictures.sh demo|gallery|methods TOOL DIRECTORY" >&2; exit 2; }
 wanted=$1 tool=$2 directory=$3
-case $wanted in demo) resolution=800,600 ;; *) resolution=360,360 ;; esac
+case $wanted in
+  demo) size='--resolution 800,600' ;;
+  gallery) size='--resolution 360,360' ;;
+  *) size='' ;;  # figures have their own
+esac
 
 mkdir -p "$directory"
 while read -r set name arguments; do
   [ "$set" = "$wanted" ] || continue
   # shellcheck disable=SC2086  # the arguments of the table are words
-  "$tool" render $arguments --resolution "$resolution" -o "$directory/$name.png"
+  "$tool" render $arguments $size -o "$directory/$name.png"
 done <<<"$pictures"

@@ -207,7 +207,7 @@ void add_method(CLI::App& app, RenderOptions& options) {
         if (*method.samples_per_voxel > kHighestRate)
           throw UsageError(option + ": '" + text + "' is not a number above 0, at most 64");
       });
-  add(app, "--samples", "N", "Samples a segment of the integrator post",
+  add(app, "--samples", "N", "Samples a segment of the integrator post, where no rate is fixed",
       store(method.samples, integer(1, kLargestSampleCount)));
   add(app, "--tolerance", "ERROR",
       "Error in colour that the picture may have, 1e-7 to 1 (default: 0.002, half an 8-bit step)",

@@ -76,8 +76,8 @@ class AntiderivativeIntegrator {
     const Int node = hn::Min(hn::ConvertTo(kInt, clamped), hn::Set(kInt, table_.last_node - 1));
     const Float f = hn::Sub(clamped, hn::ConvertTo(kFloat, node));
     const Uint record = hn::BitCast(kUint, hn::Add(node, node));
-    const Record low = load_records(entries_->densities.data(), record);
-    const Record high = load_records((entries_ + 1)->densities.data(), record);
+    const Record low = load_table_records(entries_->densities.data(), record);
+    const Record high = load_table_records((entries_ + 1)->densities.data(), record);
     const auto replace = [&](int i, Float a, Float b) {
       const Float density = multiply_add(f, hn::Sub(b, a), a);
       integrals[i] = hn::IfThenElse(lanes, hn::Mul(density, length), integrals[i]);
@@ -143,9 +143,9 @@ class AntiderivativeIntegrator {
     const Float half_f = hn::Mul(constant(0.5f), f);
     // A node's densities follow its sums; those of the next node end the line from it.
     const Uint record = hn::BitCast(kUint, hn::Add(node, node));
-    const Record sums = load_records(entries_->sums.data(), record);
-    const Record low = load_records(entries_->densities.data(), record);
-    const Record high = load_records((entries_ + 1)->densities.data(), record);
+    const Record sums = load_table_records(entries_->sums.data(), record);
+    const Record low = load_table_records(entries_->densities.data(), record);
+    const Record high = load_table_records((entries_ + 1)->densities.data(), record);
     const Float scaled = hn::Mul(f, constant(table_.units_per_density));
     Point point;
     point.position = at;
@@ -338,7 +338,7 @@ class GentleAntiderivativeIntegrator {
 
   HWY_INLINE Front front_of(Float position) const {
     const Int node = hn::NearestInt(position);
-    const Record record = load_records(table_.entries.data()->sums.data(), hn::BitCast(kUint, hn::Add(node, node)));
+    const Record record = load_table_records(table_.entries.data()->sums.data(), hn::BitCast(kUint, hn::Add(node, node)));
     return {position,
             node,
             {hn::BitCast(kInt, record.x), hn::BitCast(kInt, record.y), hn::BitCast(kInt, record.z),

@@ -27,7 +27,7 @@ struct Course {
 
   HWY_INLINE Course(const MarchRays& rays, int first) {
     const Uint ray = hn::BitCast(kUint, hn::LoadU(kInt, rays.met.ray + first));
-    const Record start = load_records(rays.start, ray), course = load_records(rays.course, ray);
+    const Record start = load_table_records(rays.start, ray), course = load_table_records(rays.course, ray);
     origin[0] = start.x;
     origin[1] = start.y;
     origin[2] = start.z;
@@ -192,8 +192,8 @@ struct CellCorners {
   Record low, high;
 
   HWY_INLINE CellCorners(const MarchBrick& brick, Int cell) {
-    low = load_records(brick.records, hn::BitCast(kUint, cell));
-    high = load_records(brick.records + 4 * static_cast<std::ptrdiff_t>(brick.cells[0]) * brick.cells[1],
+    low = load_table_records(brick.records, hn::BitCast(kUint, cell));
+    high = load_table_records(brick.records + 4 * static_cast<std::ptrdiff_t>(brick.cells[0]) * brick.cells[1],
                         hn::BitCast(kUint, cell));
   }
 

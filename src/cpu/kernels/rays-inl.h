@@ -172,7 +172,7 @@ inline int clip_brick(const MarchJob& job) {
 
 /// What a vector of rays has gathered so far.
 HWY_INLINE Accumulated load_accumulated(const MarchRays& rays, int first) {
-  const Record sums = load_records(rays.sums, hn::BitCast(kUint, hn::LoadU(kInt, rays.met.ray + first)));
+  const Record sums = load_table_records(rays.sums, hn::BitCast(kUint, hn::LoadU(kInt, rays.met.ray + first)));
   return {sums.x, sums.y, sums.z, sums.w};
 }
 

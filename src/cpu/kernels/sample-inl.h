@@ -20,7 +20,7 @@ class DensityCorners {
     const std::int32_t row = brick.cells[0] + 1, slice = row * (brick.cells[1] + 1);
     const std::int32_t offsets[8] = {0, 1, row, row + 1, slice, slice + 1, slice + row, slice + row + 1};
     for (int i = 0; i < 8; ++i)
-      corners_[i] = load_records(brick.densities, hn::BitCast(kUint, hn::Add(node, hn::Set(kInt, offsets[i]))));
+      corners_[i] = load_table_records(brick.densities, hn::BitCast(kUint, hn::Add(node, hn::Set(kInt, offsets[i]))));
   }
 
   /// The densities at a depth, trilinear.

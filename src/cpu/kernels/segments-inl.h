@@ -81,8 +81,8 @@ class ControlPoints {
   /// Extinction and colour at `scalar` by the line of `interval`.
   HWY_INLINE Record eval(Int interval, Float scalar) const {
     const Uint index = hn::BitCast(kUint, interval);
-    const Record start = load_records(table_.densities_front.data()->data(), index);
-    const Record slope = load_records(table_.slopes.data()->data(), index);
+    const Record start = load_table_records(table_.densities_front.data()->data(), index);
+    const Record slope = load_table_records(table_.slopes.data()->data(), index);
     const Float x = hn::Sub(scalar, hn::GatherIndex(kFloat, table_.references.data(), interval));
     return {hn::Max(multiply_add(slope.x, x, start.x), constant(0.0f)), multiply_add(slope.y, x, start.y),
             multiply_add(slope.z, x, start.z), multiply_add(slope.w, x, start.w)};

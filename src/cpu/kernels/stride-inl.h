@@ -40,7 +40,7 @@ class LatticeSampler {
     }
     const Float index = multiply_add(cell[2], constant(layer_), multiply_add(cell[1], constant(row_), cell[0]));
     const Uint record = hn::BitCast(kUint, hn::ConvertTo(kInt, index));
-    const Record low = load_records(records_, record), high = load_records(records_ + slice_, record);
+    const Record low = load_table_records(records_, record), high = load_table_records(records_ + slice_, record);
     const auto mix = [](Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); };
     const auto mix_square = [&](const Record& r) { return mix(t[1], mix(t[0], r.x, r.y), mix(t[0], r.z, r.w)); };
     return mix(t[2], mix_square(low), mix_square(high));

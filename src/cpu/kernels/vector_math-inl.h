@@ -59,15 +59,9 @@ HWY_INLINE hn::Vec<Tag> load_blocks(Tag tag, const FindRecord& record, std::size
 }
 #endif
 
-/// Loads the 16-byte record `records[index]` of each lane. Sixteen-byte loads and a transposition beat hardware
-/// gathers.
-HWY_INLINE Record load_records(const void* records, Uint index) {
-  HWY_ALIGN std::uint32_t lane[kLanes];
-  hn::Store(hn::ShiftLeft<4>(index), kUint, lane);
-  const char* base = static_cast<const char*>(records);
-  const auto record = [&](std::size_t i) {
-    return reinterpret_cast<const float*>(base + static_cast<std::size_t>(lane[i]));
-  };
+/// The 16-byte records `record(lane)` of all lanes. Sixteen-byte loads and a transposition beat hardware gathers.
+template <class FindRecord>
+HWY_INLINE Record transpose_records(const FindRecord& record) {
 #if HWY_TARGET == HWY_SCALAR
   const float* r = record(0);
   return {constant(r[0]), constant(r[1]), constant(r[2]), constant(r[3])};
@@ -81,6 +75,22 @@ HWY_INLINE Record load_records(const void* records, Uint index) {
   return {hn::InterleaveLower(kFloat, xy_even, xy_odd), hn::InterleaveUpper(kFloat, xy_even, xy_odd),
           hn::InterleaveLower(kFloat, zw_even, zw_odd), hn::InterleaveUpper(kFloat, zw_even, zw_odd)};
 #endif
+}
+
+/// `records[index]` of each lane.
+HWY_INLINE Record load_records(const void* records, Uint index) {
+  HWY_ALIGN std::uint32_t lane[kLanes];
+  hn::Store(index, kUint, lane);
+  const float* base = static_cast<const float*>(records);
+  return transpose_records([&](std::size_t i) { return base + 4 * static_cast<std::size_t>(lane[i]); });
+}
+
+/// The same for tables of fewer than 2^28 records: their byte offsets are found for all lanes at once.
+HWY_INLINE Record load_table_records(const void* records, Uint index) {
+  HWY_ALIGN std::uint32_t offset[kLanes];
+  hn::Store(hn::ShiftLeft<4>(index), kUint, offset);
+  const char* base = static_cast<const char*>(records);
+  return transpose_records([&](std::size_t i) { return reinterpret_cast<const float*>(base + offset[i]); });
 }
 
 /// (1 - exp(-x)) / x for 0 <= x <= 1/4, to 2e-6: the series.
