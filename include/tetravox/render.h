@@ -42,18 +42,20 @@ struct RenderSettings {
   int height = 512;
   std::optional<Source> source;  ///< empty: the one for the data
   Integrator integrator = Integrator::kAntiderivative;
-  double tolerance = 2e-3;                ///< error in colour that a picture may have: half an 8-bit step
-  int samples = 8;                        ///< samples a segment (post), in [1, 4096]
-  Filter filter;                          ///< how a grid's field is reconstructed
-  double samples_per_voxel = 0.0;         ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
-  bool use_early_ray_termination = true;  ///< stop a ray when no 8-bit pixel over any background can change
-  int threads = 0;                        ///< 0: all cores
-  std::string instruction_set;            ///< "": the best there is; otherwise one of `instruction_sets()`
+  double tolerance = 2e-3;         ///< error in colour that a picture may have, in [1e-7, 1]: half an 8-bit step
+  int samples = 8;                 ///< samples a segment (post), in [1, 4096]
+  Filter filter;                   ///< how a grid's field is reconstructed
+  double samples_per_voxel = 0.0;  ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
+  bool use_early_ray_termination =
+      true;                     ///< stop a ray when no 8-bit pixel over any background can change; grids: also when
+                                ///< less than a tenth of a tolerance above one 8-bit step comes through
+  int threads = 0;              ///< 0: all cores
+  std::string instruction_set;  ///< "": the best there is; otherwise one of `instruction_sets()`
 };
 
 struct RenderStatistics {
   double seconds = 0.0;
-  double plan_seconds = 0.0;       ///< of these, what is done only after a new transfer function or new settings
+  double plan_seconds = 0.0;       ///< of these, what is done only after a new transfer function, filter or tolerance
   std::uint64_t segments = 0;      ///< ray-cell segments, as walked or marched
   std::uint64_t rays = 0;          ///< rays that met the data
   std::uint64_t stopped_rays = 0;  ///< rays stopped by the bound on steps (damaged meshes only)
@@ -61,8 +63,8 @@ struct RenderStatistics {
   std::string instruction_set;
 };
 
-/// Names of enumerators as on the command line and in scene files ("walk"; "antiderivative", "partial", "post"), and
-/// back.
+/// Names of enumerators as on the command line and in scene files ("walk", "march"; "antiderivative", "partial",
+/// "post", "pre"), and back.
 std::string name_of(Source source);
 std::string name_of(Integrator integrator);
 /// @throws Error (kInvalidArgument) that lists the names there are.

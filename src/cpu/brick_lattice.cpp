@@ -46,6 +46,21 @@ grid::BrickBox box_of(const PreparedGrid& grid, std::uint32_t brick) {
                             {brick % counts[0], brick / counts[0] % counts[1], brick / counts[0] / counts[1]});
 }
 
+/// Largest second difference along an axis of nodes [z][y][x].
+float largest_bend(const std::vector<float>& nodes, const std::array<std::int64_t, 3>& counts, int axis) {
+  const std::array<std::int64_t, 3> strides{1, counts[0], counts[0] * counts[1]};
+  const std::int64_t along = strides[axis], size = counts[0] * counts[1] * counts[2];
+  float largest = 0.0f;
+  for (std::int64_t i = along; i + along < size; ++i) {
+    const std::int64_t at = i / along % counts[axis];
+    if (at == 0 || at + 1 == counts[axis]) continue;
+    largest = std::max(largest,
+                       std::abs(nodes[static_cast<std::size_t>(i - along)] - 2.0f * nodes[static_cast<std::size_t>(i)] +
+                                nodes[static_cast<std::size_t>(i + along)]));
+  }
+  return largest;
+}
+
 /// Nodes behind the last one that a ray at the very end of the brick may look at.
 std::size_t nodes_beyond(const MarchBrick& brick) {
   const auto row = static_cast<std::size_t>(brick.cells[0]) + 1;
@@ -56,7 +71,9 @@ std::size_t nodes_beyond(const MarchBrick& brick) {
 
 void BrickLattice::prefetch(const LatticeField& field, const PreparedGrid& grid, std::uint32_t brick) {
   const grid::BrickBox box = box_of(grid, brick);
-  field.reader->prefetch({box.first, box.count});
+  grid::Block block{box.first, box.count};
+  for (std::int64_t& first : block.first) first += field.padding;
+  field.reader->prefetch(block);
 }
 
 MarchBrick BrickLattice::describe(const PreparedGrid& grid, const grid::GridFrame& frame, std::uint32_t index,
@@ -193,23 +210,16 @@ void BrickLattice::convolve(const grid::SeparableKernel& kernel, int parts, std:
   convolve_axis({1, in[2], nx * ny, block_.count[2], parts, taps}, weights, along_y_, nodes);
 }
 
-/// Bound on the distance of a field from the lattice of its nodes, by second differences.
+/// Estimate of the distance of a field from the lattice of its nodes, by second differences: of the nodes, or of the
+/// values in reach along an axis with too few of them.
 float BrickLattice::measure_bend(const MarchBrick& brick) const {
-  const std::vector<float>& nodes = values_;
-  const std::array<std::int64_t, 3> counts{brick.cells[0] + 1, brick.cells[1] + 1, brick.cells[2] + 1};
-  const std::array<std::int64_t, 3> strides{1, counts[0], counts[0] * counts[1]};
   float bend = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t along = strides[axis], size = counts[0] * counts[1] * counts[2];
-    float largest = 0.0f;
-    for (std::int64_t i = along; i + along < size; ++i) {
-      const std::int64_t at = i / along % counts[axis];
-      if (at == 0 || at + 1 == counts[axis]) continue;
-      largest = std::max(
-          largest, std::abs(nodes[static_cast<std::size_t>(i - along)] - 2.0f * nodes[static_cast<std::size_t>(i)] +
-                            nodes[static_cast<std::size_t>(i + along)]));
-    }
-    bend += 0.125f * largest;
+    constexpr std::int32_t kFewest = 3;
+    const bool has_nodes = brick.cells[axis] >= kFewest;
+    bend +=
+        0.125f * (has_nodes ? largest_bend(values_, {brick.cells[0] + 1, brick.cells[1] + 1, brick.cells[2] + 1}, axis)
+                            : largest_bend(margin_, margin_block_.count, axis));
   }
   return bend;
 }

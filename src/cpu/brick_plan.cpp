@@ -83,7 +83,8 @@ class Planner {
     }
     const BrickSummaries& bricks = sources_.grid->bricks;
     plan.is_curved = !is_good(bricks.deviation[0][brick]);
-    if (is_even_ && bricks.has_missing[brick] == 0)
+    // Samples of post-classification are counted in each cell.
+    if (is_even_ && bricks.has_missing[brick] == 0 && settings_.integrator != Integrator::kPost)
       choose_step(
           bricks, brick, [&](float deviation) { return is_good(deviation, kStridesPerRate); }, plan);
     return plan;

@@ -2,12 +2,13 @@
 
 #include "src/grid/summaries.h"
 #include "src/support/threads.h"
+#include "tetravox/error.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <span>
-#include <utility>
+#include <string>
 
 namespace tetravox::cpu {
 namespace {
@@ -52,6 +53,16 @@ std::vector<float> make_coefficients(const PreparedGrid& grid, const grid::Block
         coefficients.push_back(inside[static_cast<std::size_t>(
             (mirrored(k, 2) * whole.count[1] + mirrored(j, 1)) * whole.count[0] + mirrored(i, 0))]);
   return coefficients;
+}
+
+/// Kernels take cell data as points at the middles of the cells: between them there must be something.
+void require_middles(const GridData& grid, const Filter& filter) {
+  if (grid.association != Association::kCell) return;
+  for (const std::uint32_t points : grid.shape.dimensions)
+    if (points < 3)
+      throw Error(
+          ErrorCode::kInvalidArgument,
+          "filter '" + name_of(filter) + "' needs two cells or more along each axis: choose 'linear' or 'nearest'");
 }
 
 /// Range of the filtered field in each brick: of the values in reach, widened by what the kernel may overshoot.
@@ -99,6 +110,7 @@ FilteredField make_filtered_field(const PreparedGrid& grid, const Filter& filter
   FilteredField field;
   if (!wants_kernel(filter)) return field;
   field.filter = filter;
+  require_middles(grid.data, filter);
   if (grid.data.association == Association::kCell)
     field.middles = std::make_shared<const PreparedGrid>(prepare_grid(points_at_middles(grid.data)));
   const PreparedGrid& drawn = field.middles ? *field.middles : grid;

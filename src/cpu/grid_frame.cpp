@@ -28,39 +28,67 @@ grid::Point transform_point(const std::array<double, 12>& m, const grid::Point& 
   return q;
 }
 
-struct PixelBounds {
-  int column_begin = 0, column_end = 0, row_begin = 0, row_end = 0;
+/// Where points in front of the eye are seen, in pixels from the middle of the picture.
+class SeenBounds {
+ public:
+  explicit SeenBounds(const CameraFrame& camera) : camera_(camera) {}
+
+  void add(const grid::Point& seen) {
+    double scale = 1.0 / camera_.pixel_step;
+    if (!camera_.is_orthographic) scale /= seen[2] - camera_.eye[2];
+    for (int i = 0; i < 2; ++i) {
+      const double offset = (seen[i] - camera_.eye[i]) * scale;
+      low_[i] = std::min(low_[i], offset);
+      high_[i] = std::max(high_[i], offset);
+    }
+  }
+
+  /// None where nothing was added. A pixel more on either side stands for rounding.
+  TileBounds pixels() const {
+    if (!(low_[0] <= high_[0])) return {};
+    const auto pixel = [](double at, int size) {
+      return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(size)));
+    };
+    return {pixel(std::floor(low_[0] + 0.5 * camera_.width - 1.5), camera_.width),
+            pixel(std::ceil(high_[0] + 0.5 * camera_.width + 1.5), camera_.width),
+            pixel(std::floor(0.5 * camera_.height - high_[1] - 1.5), camera_.height),
+            pixel(std::ceil(0.5 * camera_.height - low_[1] + 1.5), camera_.height)};
+  }
+
+ private:
+  const CameraFrame& camera_;
+  double low_[2] = {HUGE_VAL, HUGE_VAL}, high_[2] = {-HUGE_VAL, -HUGE_VAL};
 };
 
-/// Pixels whose rays may meet the box: all of them where it reaches behind the eye.
-PixelBounds project_box(const grid::BrickBox& box, const grid::GridFrame& frame, const GridView& view) {
+/// Pixels whose rays may meet the box: of its part in front of the eye.
+TileBounds project_box(const grid::BrickBox& box, const grid::GridFrame& frame, const GridView& view) {
+  constexpr double kNearest = 1e-6;  // in front of the eye
   const CameraFrame& camera = view.camera;
-  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-  for (int corner = 0; corner < 8; ++corner) {
+  std::array<grid::Point, 8> corners;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
     grid::Point at{};
     for (int axis = 0; axis < 3; ++axis)
       at[axis] = frame.plane(axis, box.first[axis] + (corner >> axis & 1 ? box.count[axis] : 0));
-    const grid::Point seen = transform_point(view.camera_from_grid, at);
-    double scale = 1.0 / camera.pixel_step;
-    if (!camera.is_orthographic) {
-      const double depth = seen[2] - camera.eye[2];
-      if (!(depth > 1e-6)) return {0, camera.width, 0, camera.height};
-      scale /= depth;
-    }
-    for (int i = 0; i < 2; ++i) {
-      const double offset = (seen[i] - camera.eye[i]) * scale;
-      low[i] = std::min(low[i], offset);
-      high[i] = std::max(high[i], offset);
+    corners[corner] = transform_point(view.camera_from_grid, at);
+  }
+  SeenBounds bounds(camera);
+  const auto depth_of = [&](const grid::Point& seen) { return seen[2] - camera.eye[2]; };
+  const auto is_in_front = [&](const grid::Point& seen) { return camera.is_orthographic || depth_of(seen) > kNearest; };
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const grid::Point& from = corners[corner];
+    if (is_in_front(from)) bounds.add(from);
+    // Edges that pass the eye are cut.
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const grid::Point& to = corners[corner ^ (std::size_t{1} << axis)];
+      if (!is_in_front(from) || is_in_front(to)) continue;
+      const double t = (kNearest - depth_of(from)) / (depth_of(to) - depth_of(from));
+      grid::Point cut{};
+      for (int i = 0; i < 3; ++i) cut[i] = from[i] + t * (to[i] - from[i]);
+      cut[2] = camera.eye[2] + kNearest;
+      bounds.add(cut);
     }
   }
-  const auto pixel = [](double at, int size) {
-    return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(size)));
-  };
-  // A pixel more on either side stands for rounding.
-  return {pixel(std::floor(low[0] + 0.5 * camera.width - 1.5), camera.width),
-          pixel(std::ceil(high[0] + 0.5 * camera.width + 1.5), camera.width),
-          pixel(std::floor(0.5 * camera.height - high[1] - 1.5), camera.height),
-          pixel(std::ceil(0.5 * camera.height - low[1] + 1.5), camera.height)};
+  return bounds.pixels();
 }
 
 std::array<std::uint32_t, 3> position_of(const PreparedGrid& grid, std::uint32_t brick) {
@@ -98,7 +126,7 @@ std::vector<std::uint32_t> order_bricks(const PreparedGrid& grid, const grid::Gr
 
 /// Calls `visit(tile, bounds in the tile)` for the tiles that a box of pixels touches.
 template <class Visit>
-void for_each_tile(const PixelBounds& pixels, int tile_columns, const Visit& visit) {
+void for_each_tile(const TileBounds& pixels, int tile_columns, const Visit& visit) {
   if (pixels.column_begin >= pixels.column_end || pixels.row_begin >= pixels.row_end) return;
   for (int row = pixels.row_begin / kTileSize; row <= (pixels.row_end - 1) / kTileSize; ++row)
     for (int column = pixels.column_begin / kTileSize; column <= (pixels.column_end - 1) / kTileSize; ++column) {
@@ -149,16 +177,16 @@ BrickBins bin_bricks(const PreparedGrid& grid, const grid::GridFrame& frame, con
   bins.rows = (view.camera.height + kTileSize - 1) / kTileSize;
   bins.starts.assign(bins.tile_count() + 1, 0);
   const std::vector<std::uint32_t> ordered = order_bricks(grid, frame, bricks, view);
-  std::vector<PixelBounds> pixels(ordered.size());
+  std::vector<TileBounds> pixels(ordered.size());
   support::parallel_chunks(ordered.size(), 1 << 10, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       pixels[i] = project_box(grid::box_of_brick(grid.data.shape, position_of(grid, ordered[i])), frame, view);
   });
-  for (const PixelBounds& seen : pixels)
+  for (const TileBounds& seen : pixels)
     for_each_tile(seen, bins.columns, [&](std::size_t tile, const TileBounds&) { ++bins.starts[tile + 1]; });
   for (std::size_t i = 1; i < bins.starts.size(); ++i) bins.starts[i] += bins.starts[i - 1];
   bins.bricks.resize(bins.starts.back());
-  std::vector<std::uint32_t> next(bins.starts.begin(), bins.starts.end() - 1);
+  std::vector<std::size_t> next(bins.starts.begin(), bins.starts.end() - 1);
   for (std::size_t i = 0; i < ordered.size(); ++i)
     for_each_tile(pixels[i], bins.columns, [&](std::size_t tile, const TileBounds& bounds) {
       bins.bricks[next[tile]++] = {ordered[i], bounds};

@@ -35,7 +35,7 @@ struct BinnedBrick {
 /// The bricks of each tile, front to back.
 struct BrickBins {
   int columns = 0, rows = 0;  ///< of tiles
-  std::vector<std::uint32_t> starts;
+  std::vector<std::size_t> starts;
   std::vector<BinnedBrick> bricks;
 
   std::size_t tile_count() const { return static_cast<std::size_t>(columns) * rows; }

@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <span>
 #include <utility>
@@ -55,7 +54,7 @@ Marches choose_marches(const Kernels& kernels, bool is_constant, const RenderSet
     case Integrator::kPartial:
       return both(has_rate ? kernels.sample_partial : kernels.march_partial, kernels.stride_partial);
     case Integrator::kPost:
-      return both(has_rate ? kernels.sample_post : kernels.march_post, kernels.stride_post);
+      return both(has_rate ? kernels.sample_post : kernels.march_post, nullptr);
     case Integrator::kPre:
       return both(has_rate ? kernels.sample_densities : kernels.march_densities, nullptr);
     case Integrator::kAntiderivative:
@@ -170,10 +169,10 @@ LatticeField GridRenderer::lattice_field(const RenderSettings& settings, const K
 
 void GridRenderer::prepare_filter(const RenderSettings& settings) {
   if (field_.kernel ? field_.filter == settings.filter : !wants_kernel(settings.filter)) return;
-  field_ = {};
-  field_ = make_filtered_field(grid_, settings.filter);
-  frame_ = grid::make_grid_frame(drawn().data.shape);
   is_planned_ = false;
+  FilteredField field = make_filtered_field(grid_, settings.filter);
+  field_ = std::move(field);
+  frame_ = grid::make_grid_frame(drawn().data.shape);
 }
 
 PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
@@ -259,8 +258,8 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
     throw Error(
         ErrorCode::kInvalidArgument,
         "pre-classification does not go with the filter 'bspline-interpolating': choose 'bspline' or 'catmull-rom'");
-  prepare_filter(settings);
   const support::Timer timer;
+  prepare_filter(settings);
   plan(settings);
   statistics.plan_seconds = timer.seconds();
 

@@ -35,7 +35,8 @@ std::vector<double> weights_at(const SeparableKernel& kernel, double phase);
 double overshoot_of(const SeparableKernel& kernel);
 
 /// Coefficients of the cubic B-spline that passes through the values of `values` [k][j][i], in place: a recursive
-/// filter along each axis with mirrored borders (Unser, Aldroubi, Eden 1991). Values that are not numbers count as 0.
+/// filter along each axis with mirrored borders (Unser, Aldroubi, Eden 1991). Values that are not numbers stay;
+/// the rows end there and begin anew.
 void prefilter_bspline(const std::array<std::size_t, 3>& dimensions, std::vector<float>& values);
 
 }  // namespace tetravox::grid

@@ -65,7 +65,7 @@ float measure_coarse_error(const BrickValues& brick, std::int64_t stride) {
   return error;
 }
 
-/// Finds range and missing values; false where all are missing.
+/// Finds range and missing values; min > max where all are missing.
 void summarize_range(const BrickValues& brick, std::size_t size, float& min, float& max, bool& has_missing) {
   min = kInfinity;
   max = -kInfinity;

@@ -11,18 +11,19 @@ namespace tetravox::grid {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
 /// The type in which a value is moved and scaled: float where that loses nothing.
 template <class T>
 using Working = std::conditional_t<(sizeof(T) <= 2 || std::is_same_v<T, float>), float, double>;
 
-template <class T>
+template <class T, class W>
 void read_scalars(const std::byte* row, int components, int component, std::int64_t count, double offset,
                   double inverse_scale, float* out) {
   const T* values = reinterpret_cast<const T*>(row) + component;
-  const auto moved = static_cast<Working<T>>(offset), scale = static_cast<Working<T>>(inverse_scale);
+  const auto moved = static_cast<W>(offset), scale = static_cast<W>(inverse_scale);
   const auto read = [&](std::int64_t from, std::int64_t to) {
-    const auto stored = static_cast<float>((static_cast<Working<T>>(values[from]) - moved) * scale);
+    const auto stored = static_cast<float>((static_cast<W>(values[from]) - moved) * scale);
     if constexpr (std::is_floating_point_v<T>)
       out[to] = stored - stored == 0.0f ? stored : kMissing;
     else
@@ -72,9 +73,11 @@ BlockReader::BlockReader(const GridData& grid, const ScalarFrame& frame)
   const auto dimensions = grid.value_dimensions();
   for (int axis = 0; axis < 3; ++axis) dimensions_[axis] = static_cast<std::int64_t>(dimensions[axis]);
   // Float cannot hold the factor of tiny or huge values: then everything goes through double.
+  const bool fits = inverse_scale_ <= kLargestFloat && inverse_scale_ >= std::numeric_limits<float>::min();
   read_row_ = visit_type(grid.type, [&](auto value) -> ReadRow {
     using T = decltype(value);
-    return grid.component == kMagnitude ? &read_magnitudes<T> : &read_scalars<T>;
+    if (grid.component == kMagnitude) return &read_magnitudes<T>;
+    return fits ? &read_scalars<T, Working<T>> : &read_scalars<T, double>;
   });
 }
 

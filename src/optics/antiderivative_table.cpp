@@ -9,7 +9,7 @@
 namespace tetravox::optics {
 namespace {
 
-/// Nodes over the range in which the function varies: what the second-level cache holds.
+/// Nodes over the range in which the function varies; as many again on either side where data lie beyond.
 constexpr std::int32_t kNodes = 16384;
 /// Error of the picture that a flat segment between two nodes may cause; where it may be more, segments are integrated
 /// from control point to control point.

@@ -55,8 +55,9 @@ void build_steepness_table(const ControlPointTable& points, float min, float max
   for (int bin = 0; bin < kBins; ++bin) {
     // A bin reaches a little over its ends, so that rounding never loses a control point.
     float low = min + width * (static_cast<float>(bin) - 0.01f), high = min + width * (static_cast<float>(bin) + 1.01f);
-    if (bin == 0) low -= max - min;  // filters may leave the range of the values, by less than its width
-    if (bin == kBins - 1) high += max - min;
+    // Filters may leave the range of the values, by a few times its width.
+    if (bin == 0) low -= 16.0f * (max - min);
+    if (bin == kBins - 1) high += 16.0f * (max - min);
     while (interval > 0 && points.starts[interval] > low) --interval;
     while (interval + 1 < intervals && points.starts[interval + 1] < low) ++interval;
     float& steepness = table.steepness[static_cast<std::size_t>(bin)];

@@ -150,6 +150,37 @@ TEST(GridSettings, ARendererKeepsNothingOfOtherSettings) {
   }
 }
 
+TEST(GridSettings, AnEyeAmongTheBricksCostsLittleMemory) {
+  // Bricks behind the eye are seen by no tile.
+  tests::GridOptions options;
+  options.dimensions = {97, 97, 97};
+  const GridSubject scene(make_grid(options, tests::make_random_field(8, 2.0)));
+  Renderer renderer(scene.grid);
+  renderer.set_transfer_function(scene.function("smooth"));
+  const RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 512, 512);
+  renderer.render(scene.camera("outside"), settings);
+  const std::uint64_t outside = renderer.bytes();
+  const Image image = renderer.render(scene.camera("inside"), settings);
+  EXPECT_EQ(tests::count_covered(image), 512u * 512u);
+  EXPECT_LT(renderer.bytes(), outside + 1'000'000);
+}
+
+TEST(GridSettings, ARayDoesNotDependOnItsNeighbours) {
+  // Cells of optical depth 1/4, the border between two formulas, beside cells that are thicker.
+  tests::GridOptions options;
+  options.dimensions = {9, 9, 9};
+  const GridSubject scene(make_grid(options, [](const Vector3& p) { return p[0] > 0 ? 1.0 : 0.0; }));
+  const double cell = (scene.grid.bounds[2].max - scene.grid.bounds[2].min) / 8.0;
+  const OpticalFunction function{{{0.0, 0.25 / cell, {0.9, 0.5, 0.1}}, {1.0, 3.0 / cell, {0.1, 0.5, 0.9}}}};
+  RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 61, 47);
+  const Image first = render(scene.grid, function, scene.camera("orthographic"), settings);
+  for (const std::string& instruction_set : instruction_sets()) {
+    settings.instruction_set = instruction_set;
+    EXPECT_TRUE(tests::images_equal(render(scene.grid, function, scene.camera("orthographic"), settings), first))
+        << instruction_set;
+  }
+}
+
 TEST(GridSettings, AGridOutOfSightLeavesThePictureEmpty) {
   const GridSubject scene(make_hard_grids()[0].grid);
   Camera camera = scene.camera("outside");

@@ -11,8 +11,6 @@
 #include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 
-#include <cmath>
-
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
@@ -284,8 +282,9 @@ class AntiderivativeIntegrator {
   bool covers_data_;
 };
 
-/// The same for functions that are gentle at the table's resolution (`AntiderivativeTable::is_gentle`): scalars are
-/// rounded to nodes, so that a segment costs one 16-byte load instead of three.
+/// The same where the function is gentle at the table's resolution (meshes: `AntiderivativeTable::is_gentle`; grids,
+/// brick by brick: `BrickPlan::is_gentle`): scalars are rounded to nodes, so that a segment costs one 16-byte load
+/// instead of three.
 class GentleAntiderivativeIntegrator {
  public:
   /// The scalar at the front, the node that stands for it, and the antiderivatives there.
@@ -338,7 +337,8 @@ class GentleAntiderivativeIntegrator {
 
   HWY_INLINE Front front_of(Float position) const {
     const Int node = hn::NearestInt(position);
-    const Record record = load_table_records(table_.entries.data()->sums.data(), hn::BitCast(kUint, hn::Add(node, node)));
+    const Record record =
+        load_table_records(table_.entries.data()->sums.data(), hn::BitCast(kUint, hn::Add(node, node)));
     return {position,
             node,
             {hn::BitCast(kInt, record.x), hn::BitCast(kInt, record.y), hn::BitCast(kInt, record.z),

@@ -66,7 +66,6 @@ Kernels make_kernels() {
   kernels.stride_antiderivative = &stride<AntiderivativeIntegrator>;
   kernels.stride_gentle_antiderivative = &stride<GentleAntiderivativeIntegrator>;
   kernels.stride_partial = &stride<PartialIntegrator>;
-  kernels.stride_post = &stride<PostIntegrator>;
   kernels.march_cells = &march_cells;
   kernels.march_densities = &march_densities;
   kernels.sample_antiderivative = &sample<ScalarSampler<AntiderivativeIntegrator>>;

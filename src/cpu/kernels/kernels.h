@@ -41,7 +41,7 @@ struct FrameMesh {
   const BoundaryFace* faces = nullptr;  ///< where rays enter: the boundary, then the faces of cells around the eye
 };
 
-/// One of these is used, by the integrator.
+/// What integrators look up; each uses one or two of them.
 struct IntegratorTables {
   const optics::AntiderivativeTable* antiderivative = nullptr;
   const optics::ControlPointTable* control_points = nullptr;
@@ -154,7 +154,6 @@ struct MarchJob {
   float z_near = 0.0f;
   float stride = 1.0f;           ///< lattice cells
   float sample_distance = 0.0f;  ///< world length between samples at a fixed rate, which goes before `stride`
-  bool is_constant = false;      ///< whether the scalar is constant in each cell
   bool use_early_ray_termination = true;
   float negligible = 0.0f;  ///< transmittance below which a ray ends, too
 };
@@ -194,7 +193,6 @@ struct Kernels {
   std::uint64_t (*stride_antiderivative)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*stride_gentle_antiderivative)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*stride_partial)(const MarchJob& job, int count) = nullptr;
-  std::uint64_t (*stride_post)(const MarchJob& job, int count) = nullptr;
   /// At a fixed rate: pre-integrated from sample to sample, post-classified, pre-classified.
   std::uint64_t (*sample_antiderivative)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*sample_partial)(const MarchJob& job, int count) = nullptr;

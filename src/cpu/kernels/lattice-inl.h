@@ -194,7 +194,7 @@ struct CellCorners {
   HWY_INLINE CellCorners(const MarchBrick& brick, Int cell) {
     low = load_table_records(brick.records, hn::BitCast(kUint, cell));
     high = load_table_records(brick.records + 4 * static_cast<std::ptrdiff_t>(brick.cells[0]) * brick.cells[1],
-                        hn::BitCast(kUint, cell));
+                              hn::BitCast(kUint, cell));
   }
 
   /// The trilinear field at a depth.

@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 
 HWY_BEFORE_NAMESPACE();
@@ -128,7 +127,10 @@ inline int clip_brick(const MarchJob& job) {
         enter = hn::Max(enter, slab.enter);
         leave = hn::Min(leave, slab.leave);
       }
-      const Mask hit = hn::Gt(leave, enter);
+      const Int columns = hn::Iota(kInt, column);
+      const auto inside = hn::And(hn::Gt(columns, hn::Set(kInt, bounds.column_begin - 1)),
+                                  hn::Lt(columns, hn::Set(kInt, bounds.column_end)));
+      const Mask hit = hn::And(hn::Gt(leave, enter), hn::RebindMask(kFloat, inside));
       if (hn::AllFalse(kFloat, hit)) continue;
       const Int ray = hn::Iota(kInt, first);
       if (!wants_sort && hn::AllTrue(kFloat, hit)) {

@@ -34,7 +34,7 @@ class DensityCorners {
     return {channel(&Record::x), channel(&Record::y), channel(&Record::z), channel(&Record::w)};
   }
 
-  /// 0 where a corner is missing.
+  /// Where a corner is missing, of some others or 0.
   HWY_INLINE Float largest_extinction() const {
     Float largest = corners_[0].x;
     for (int i = 1; i < 8; ++i) largest = hn::Max(largest, corners_[i].x);
@@ -187,7 +187,9 @@ class RateMarcher {
     const Value entered = typename Sampler::Corners(brick_, rays.cell).eval(rays, rays.front);
     samples.value = Sampler::select(fresh, entered, Sampler::pack(channels));
     samples.depth = hn::IfThenElse(fresh, rays.front, samples.depth);
-    const Float first = hn::Add(hn::Floor(hn::Div(rays.front, samples.distance)), constant(1.0f));
+    Float first = hn::Add(hn::Floor(hn::Div(rays.front, samples.distance)), constant(1.0f));
+    const Mask is_here = hn::Le(hn::Mul(first, samples.distance), rays.front);  // by rounding
+    first = hn::Add(first, hn::IfThenElseZero(is_here, constant(1.0f)));
     samples.number = hn::IfThenElse(fresh, first, samples.number);
     return samples;
   }

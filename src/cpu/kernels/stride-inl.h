@@ -69,13 +69,13 @@ class Strider {
     constexpr int kStep = static_cast<int>(kLanes);
     for (int first = 0; first < count; first += 2 * kStep) {
       // An odd vector has a companion of the same rays that does nothing.
-      const int seconds = std::max(std::min(count - first - kStep, kStep), 0);
+      const int more = std::max(std::min(count - first - kStep, kStep), 0);
       Travellers pair[2];
       set_out(first, std::min(count - first, kStep), pair[0]);
-      set_out(seconds > 0 ? first + kStep : first, seconds, pair[1]);
+      set_out(more > 0 ? first + kStep : first, more, pair[1]);
       travel(pair);
       arrive(pair[0], first, std::min(count - first, kStep));
-      arrive(pair[1], first + kStep, seconds);
+      arrive(pair[1], first + kStep, more);
     }
     return segments_;
   }
@@ -105,7 +105,7 @@ class Strider {
     const Float world = hn::Mul(depth, course.world_per_z);
     const Float wanted = hn::Ceil(job_.sample_distance > 0.0f ? hn::Mul(world, constant(1.0f / job_.sample_distance))
                                                               : hn::Mul(hn::Sqrt(square), steps_per_cell_));
-    rays.steps = hn::Min(hn::Max(wanted, constant(1.0f)), constant(1000.0f));
+    rays.steps = hn::Min(hn::Max(wanted, constant(1.0f)), constant(1e5f));
     const Float share = hn::Div(constant(1.0f), rays.steps);
     for (Float& along : rays.step) along = hn::Mul(along, share);
     rays.length = hn::Mul(world, share);

@@ -121,7 +121,7 @@ HWY_INLINE Float exp_negative(Float x) {
 /// (1 - exp(-x)) / x for any x >= 0.
 HWY_INLINE Float absorbed_ratio(Float x) {
   const Float exact = hn::Div(hn::Sub(constant(1.0f), exp_negative(x)), hn::Max(x, constant(0.25f)));
-  return hn::IfThenElse(hn::Lt(x, constant(0.25f)), absorbed_ratio_series(x), exact);
+  return hn::IfThenElse(hn::Le(x, constant(0.25f)), absorbed_ratio_series(x), exact);
 }
 
 }  // namespace HWY_NAMESPACE
