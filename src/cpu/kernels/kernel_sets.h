@@ -1,0 +1,12 @@
+#pragma once
+
+/// The kernels by source, each set compiled in a file of its own: for the instruction set that Highway has chosen.
+
+#include "src/cpu/kernels/kernels.h"
+
+namespace tetravox::cpu {
+
+void add_walk_kernels(Kernels& kernels);   ///< of meshes
+void add_march_kernels(Kernels& kernels);  ///< of grids
+
+}  // namespace tetravox::cpu
