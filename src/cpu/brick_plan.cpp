@@ -83,10 +83,12 @@ class Planner {
     }
     const BrickSummaries& bricks = sources_.grid->bricks;
     plan.is_curved = !is_good(bricks.deviation[0][brick]);
-    // Samples of post-classification are counted in each cell.
-    if (is_even_ && bricks.has_missing[brick] == 0 && settings_.integrator != Integrator::kPost)
+    if (!is_even_ || bricks.has_missing[brick] != 0) return plan;
+    if (settings_.integrator != Integrator::kPost)
       choose_step(
           bricks, brick, [&](float deviation) { return is_good(deviation, kStridesPerRate); }, plan);
+    else if (min == max)
+      plan.level = 3;  // otherwise samples are counted in each cell
     return plan;
   }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace tetravox {
@@ -25,34 +26,40 @@ Camera make_camera(const PreparedMesh& mesh, double aspect) {
   return fit.camera();
 }
 
-/// Tells which values a function shows.
+/// Tells which values a function shows: the intervals in which it is dense enough, ascending and apart.
 class ShownValues {
  public:
-  ShownValues(const OpticalFunction& function, double least_extinction)
-      : function_(function), least_(least_extinction) {
-    std::size_t shown = 0;
-    for (const OpticalPoint& point : function.points)
-      shown_before_.push_back(shown += point.extinction > least_extinction);
+  ShownValues(const OpticalFunction& function, double least_extinction) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const auto is_shown = [&](const OpticalPoint& point) { return point.extinction > least_extinction; };
+    const auto& points = function.points;
+    if (is_shown(points.front())) add(-kInfinity, points.front().value);
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      const OpticalPoint &a = points[i], &b = points[i + 1];
+      if (!is_shown(a) && !is_shown(b)) continue;
+      const double rise = b.extinction - a.extinction;
+      const double t = rise != 0.0 ? (least_extinction - a.extinction) / rise : 0.0;
+      const double crossing = a.value + std::clamp(t, 0.0, 1.0) * (b.value - a.value);
+      add(is_shown(a) ? a.value : crossing, is_shown(b) ? b.value : crossing);
+    }
+    if (is_shown(points.back())) add(points.back().value, kInfinity);
   }
-  /// Whether a value in [min, max] is shown: at its ends, or at a control point inside.
+  /// Whether a value in [min, max] is shown.
   bool any(double min, double max) const {
-    if (eval_optical_function(function_, min).extinction > least_ ||
-        eval_optical_function(function_, max).extinction > least_)
-      return true;
-    return count_below(max) > count_below(min);
+    const auto first = std::lower_bound(intervals_.begin(), intervals_.end(), min,
+                                        [](const ValueRange& interval, double value) { return interval.max < value; });
+    return first != intervals_.end() && first->min <= max;
   }
 
  private:
-  std::size_t count_below(double value) const {
-    const auto end = std::upper_bound(function_.points.begin(), function_.points.end(), value,
-                                      [](double a, const OpticalPoint& b) { return a < b.value; });
-    const auto points = static_cast<std::size_t>(end - function_.points.begin());
-    return points > 0 ? shown_before_[points - 1] : 0;
+  void add(double begin, double end) {
+    if (!intervals_.empty() && begin <= intervals_.back().max)
+      intervals_.back().max = std::max(intervals_.back().max, end);
+    else
+      intervals_.push_back({begin, end});
   }
 
-  const OpticalFunction& function_;
-  double least_;
-  std::vector<std::size_t> shown_before_;
+  std::vector<ValueRange> intervals_;
 };
 
 /// The default camera, fitted to the bricks that the function shows.
