@@ -1,7 +1,6 @@
 #include "src/optics/antiderivative_table.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>

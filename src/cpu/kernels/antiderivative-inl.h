@@ -40,8 +40,6 @@ class AntiderivativeIntegrator {
         covers_data_(tables.antiderivative->covers_data && !tables.may_overshoot) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return point_at(position(scalar)); }
-  HWY_INLINE Front restore_front(Int, Float scalar) const { return front_at(scalar); }
-  static HWY_INLINE Int node_of(const Front&) { return hn::Zero(kInt); }
   static HWY_INLINE void replace_front(Mask mask, const Front& from, Front& to) {
     to.position = hn::IfThenElse(mask, from.position, to.position);
     for (int i = 0; i < 4; ++i) {
@@ -298,8 +296,6 @@ class GentleAntiderivativeIntegrator {
       : table_(*tables.antiderivative), precise_(tables) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return front_of(precise_.inside(precise_.position(scalar))); }
-  HWY_INLINE Front restore_front(Int, Float scalar) const { return front_at(scalar); }
-  static HWY_INLINE Int node_of(const Front& front) { return front.node; }
   static HWY_INLINE void replace_front(Mask mask, const Front& from, Front& to) {
     to.position = hn::IfThenElse(mask, from.position, to.position);
     to.node = hn::IfThenElse(int_mask(mask), from.node, to.node);

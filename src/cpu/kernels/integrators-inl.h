@@ -19,8 +19,6 @@ namespace HWY_NAMESPACE {
 struct WithoutFront {
   struct Front {};
   HWY_INLINE Front front_at(Float) const { return {}; }
-  HWY_INLINE Front restore_front(Int, Float) const { return {}; }
-  static HWY_INLINE Int node_of(const Front&) { return hn::Zero(kInt); }
   static HWY_INLINE void replace_front(Mask, const Front&, Front&) {}
 };
 

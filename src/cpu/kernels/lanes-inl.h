@@ -25,7 +25,6 @@ struct Lanes {
   HWY_ALIGN float weight[3][kLanes];
   HWY_ALIGN std::uint32_t cell[kLanes];
   HWY_ALIGN float z_front[kLanes], scalar_front[kLanes];
-  HWY_ALIGN std::int32_t front_node[kLanes];  ///< what the integrator keeps of the front; -1: nothing yet
   HWY_ALIGN float red[kLanes], green[kLanes], blue[kLanes], transmittance[kLanes];
   HWY_ALIGN float x_offset[kLanes], x_slope[kLanes], y_offset[kLanes], y_slope[kLanes];
   HWY_ALIGN float world_per_z[kLanes];    ///< length of the ray for one unit of z

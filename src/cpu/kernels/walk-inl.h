@@ -41,7 +41,6 @@ class Walker {
     lanes_.ray[lane] = kNoRay;
     lanes_.alive[lane] = 0;
     lanes_.cell[lane] = 0;
-    lanes_.front_node[lane] = -1;
     for (int k = 0; k < 3; ++k) {
       lanes_.id[k][lane] = 0;
       lanes_.x[k][lane] = lanes_.y[k][lane] = lanes_.z[k][lane] = lanes_.scalar[k][lane] = lanes_.weight[k][lane] =
@@ -115,7 +114,6 @@ class Walker {
       lanes_.scalar[k][lane] = scalar[k];
     }
     lanes_.cell[lane] = face.cell;
-    lanes_.front_node[lane] = -1;
     lanes_.z_front[lane] = total > 0.0f ? depth / total : z[0];
     lanes_.z_checked[lane] = -std::numeric_limits<float>::infinity();
     lanes_.scalar_front[lane] = total > 0.0f ? value / total : scalar[0];
@@ -150,7 +148,7 @@ class Walker {
     s.scalar_front = hn::Load(kFloat, lanes_.scalar_front);
     s.sum = {hn::Load(kFloat, lanes_.red), hn::Load(kFloat, lanes_.green), hn::Load(kFloat, lanes_.blue),
              hn::Load(kFloat, lanes_.transmittance)};
-    s.front = integrator_.restore_front(hn::Load(kInt, lanes_.front_node), s.scalar_front);
+    s.front = integrator_.front_at(s.scalar_front);
     s.alive = float_mask(hn::Ne(hn::Load(kUint, lanes_.alive), hn::Zero(kUint)));
     return s;
   }
@@ -167,7 +165,6 @@ class Walker {
     hn::Store(s.cell, kUint, lanes_.cell);
     hn::Store(s.z_front, kFloat, lanes_.z_front);
     hn::Store(s.scalar_front, kFloat, lanes_.scalar_front);
-    hn::Store(Integrator::node_of(s.front), kInt, lanes_.front_node);
     hn::Store(s.sum.red, kFloat, lanes_.red);
     hn::Store(s.sum.green, kFloat, lanes_.green);
     hn::Store(s.sum.blue, kFloat, lanes_.blue);
