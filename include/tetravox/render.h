@@ -5,8 +5,12 @@
 /// The one-call function is `render`. `Renderer` keeps what can be kept between frames.
 
 #include "tetravox/camera.h"
+#include "tetravox/clipping.h"
+#include "tetravox/domain_function.h"
 #include "tetravox/grid.h"
 #include "tetravox/image.h"
+#include "tetravox/isosurface.h"
+#include "tetravox/lighting.h"
 #include "tetravox/mesh.h"
 #include "tetravox/progress.h"
 #include "tetravox/transfer_function.h"
@@ -34,6 +38,14 @@ enum class Integrator {
   kPre              ///< pre-classification: colours and extinctions at the values, interpolated; for comparison
 };
 
+/// What makes homogeneous regions fade: extinction is multiplied by how fast the scalar changes, in units of value
+/// range / diagonal of the bounds, times `RenderSettings::opacity_weight_scale`, at most 1.
+enum class OpacityWeight {
+  kNone,
+  kScalarDifference,  ///< along the ray: of the segment's two scalars (Engel and Ertl 2002, figure 40)
+  kGradient           ///< in space: the magnitude of the gradient (Levoy 1988)
+};
+
 inline constexpr int kLargestResolution = 16384;
 inline constexpr double kSmallestTolerance = 1e-7;
 
@@ -46,6 +58,12 @@ struct RenderSettings {
   int samples = 8;                 ///< samples a segment (post), in [1, 4096]
   Filter filter;                   ///< how a grid's field is reconstructed
   double samples_per_voxel = 0.0;  ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
+  Lighting lighting;
+  std::vector<Isosurface> surfaces;
+  Clipping clipping;
+  OpacityWeight opacity_weight = OpacityWeight::kNone;
+  double opacity_weight_scale = 0.1;  ///< > 0
+  bool wants_depth = false;           ///< fill `Image::depth`
   bool use_early_ray_termination =
       true;                     ///< stop a ray when no 8-bit pixel over any background can change; grids: also when
                                 ///< less than a tenth of a tolerance above one 8-bit step comes through
@@ -67,9 +85,11 @@ struct RenderStatistics {
 /// "post", "pre"), and back.
 std::string name_of(Source source);
 std::string name_of(Integrator integrator);
+std::string name_of(OpacityWeight weight);  ///< "none", "scalar-difference", "gradient"
 /// @throws Error (kInvalidArgument) that lists the names there are.
 Source source_from_name(const std::string& name);
 Integrator integrator_from_name(const std::string& name);
+OpacityWeight opacity_weight_from_name(const std::string& name);
 /// Names, one-line descriptions with the paper.
 std::vector<std::pair<std::string, std::string>> source_names();
 std::vector<std::pair<std::string, std::string>> integrator_names();
@@ -91,6 +111,17 @@ class Renderer {
   /// Extinctions beyond what is opaque within a millionth of the mesh's diagonal are taken as that.
   /// @throws Error (kInvalidArgument) for no points, values that descend or are not finite, negative extinctions.
   void set_transfer_function(const OpticalFunction& function);
+
+  /// A function of several variables in place of the transfer function; `axes` say what each variable is, as many as
+  /// the table has. Arrays are those of the dataset's `others`, by name. An empty table: back to the transfer function.
+  /// @throws Error (kInvalidArgument) for arrays that the data do not have.
+  void set_domain_function(const DomainTable& table, const std::vector<DomainAxis>& axes);
+
+  /// The grid of the clip volume at index `shape` of `RenderSettings::clipping`. Views it.
+  void set_clip_volume(std::size_t shape, const PreparedGrid& grid);
+
+  /// What `RenderSettings::lighting.environment` looks like.
+  void set_environment(EnvironmentMap map);
 
   /// The picture. The same bytes for any number of threads, on every run and with every instruction set.
   /// @throws Error: kInvalidArgument for settings or camera out of range, kOutOfMemory, kCancelled.

@@ -90,7 +90,7 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
   support::require_memory(frames.missing_bytes(settings), "drawing this picture");
 
   const support::Timer timer;
-  Image image{settings.width, settings.height, {}};
+  Image image{settings.width, settings.height, {}, {}};
   RenderStatistics drawn;
   support::with_threads(settings.threads, [&] {
     image.pixels.resize(4 * static_cast<std::size_t>(settings.width) * settings.height);

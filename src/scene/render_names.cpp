@@ -30,6 +30,28 @@ constexpr std::array<Name<Integrator>, 4> kIntegrators{
      {Integrator::kPre, "pre",
       "pre-classification: colours and extinctions at the values, interpolated; for comparison"}}};
 
+constexpr std::array<Name<OpacityWeight>, 3> kOpacityWeights{
+    {{OpacityWeight::kNone, "none", "extinction as the function says"},
+     {OpacityWeight::kScalarDifference, "scalar-difference",
+      "by the change of the scalar along the ray (Engel and Ertl 2002, figure 40)"},
+     {OpacityWeight::kGradient, "gradient", "by the magnitude of the gradient (Levoy 1988)"}}};
+
+constexpr std::array<Name<GradientMethod>, 5> kGradientMethods{
+    {{GradientMethod::kDefault, "default", "vertex for meshes; filter for grids, central with linear or nearest"},
+     {GradientMethod::kFilter, "filter", "grids: the derivative of the filter"},
+     {GradientMethod::kCentral, "central", "grids: central differences of the values"},
+     {GradientMethod::kVertex, "vertex", "meshes: volume-weighted averages at the vertices"},
+     {GradientMethod::kCell, "cell", "meshes: the constant gradient of each tetrahedron"}}};
+
+constexpr std::array<Name<LightKind>, 3> kLightKinds{{{LightKind::kHeadlight, "headlight", "shines from the eye"},
+                                                      {LightKind::kDirectional, "directional", "parallel rays"},
+                                                      {LightKind::kPoint, "point", "shines from a place"}}};
+
+constexpr std::array<Name<ShadowKind>, 3> kShadowKinds{
+    {{ShadowKind::kNone, "none", "light reaches everything"},
+     {ShadowKind::kVolume, "volume", "optical depth towards each light on a lattice"},
+     {ShadowKind::kRays, "rays", "a ray towards each light from each shaded place: exact, slow"}}};
+
 template <class Names>
 auto enumerator_from_name(const Names& names, std::string_view name, std::string_view what) {
   std::string known;
@@ -62,6 +84,22 @@ std::string name_of(Integrator integrator) { return name_of_enumerator(kIntegrat
 Source source_from_name(const std::string& name) { return enumerator_from_name(kSources, name, "source"); }
 Integrator integrator_from_name(const std::string& name) {
   return enumerator_from_name(kIntegrators, name, "integrator");
+}
+std::string name_of(OpacityWeight weight) { return name_of_enumerator(kOpacityWeights, weight); }
+std::string name_of(GradientMethod method) { return name_of_enumerator(kGradientMethods, method); }
+std::string name_of(LightKind kind) { return name_of_enumerator(kLightKinds, kind); }
+std::string name_of(ShadowKind kind) { return name_of_enumerator(kShadowKinds, kind); }
+OpacityWeight opacity_weight_from_name(const std::string& name) {
+  return enumerator_from_name(kOpacityWeights, name, "opacity weight");
+}
+GradientMethod gradient_method_from_name(const std::string& name) {
+  return enumerator_from_name(kGradientMethods, name, "gradient method");
+}
+LightKind light_kind_from_name(const std::string& name) {
+  return enumerator_from_name(kLightKinds, name, "kind of light");
+}
+ShadowKind shadow_kind_from_name(const std::string& name) {
+  return enumerator_from_name(kShadowKinds, name, "kind of shadow");
 }
 std::vector<std::pair<std::string, std::string>> source_names() { return list_names(kSources); }
 std::vector<std::pair<std::string, std::string>> integrator_names() { return list_names(kIntegrators); }

@@ -1,0 +1,111 @@
+#pragma once
+
+/// Light: what makes shape visible. Blinn-Phong as in Engel and Ertl 2002, environments, shadows, ambient occlusion.
+///
+/// Without lights and without an environment a picture is emission and absorption alone (docs/conventions.md). With
+/// them, the emitted colour c of each stretch of a ray is multiplied by the light that arrives there, and a highlight
+/// is added (docs/methods/light.md).
+
+#include "tetravox/camera.h"
+#include "tetravox/transfer_function.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetravox {
+
+/// Where normals come from.
+enum class GradientMethod {
+  kDefault,  ///< meshes: kVertex; grids: kFilter, but kCentral where the filter is linear or nearest
+  kFilter,   ///< grids: the exact derivative of the reconstructed field (jumps from cell to cell where that is linear)
+  kCentral,  ///< grids: central differences of the values, linear in between
+  kVertex,   ///< meshes: volume-weighted averages at the vertices, linear in between
+  kCell      ///< meshes: the constant gradient of each tetrahedron
+};
+
+/// Weights of the terms; each in [0, 1].
+struct Material {
+  double ambient = 0.3;
+  double diffuse = 0.7;
+  double specular = 0.3;
+  double shininess = 32.0;  ///< exponent of the highlight, in [1, 1000]
+};
+
+enum class LightKind {
+  kHeadlight,    ///< shines from the eye
+  kDirectional,  ///< parallel rays
+  kPoint         ///< shines from a place, equally strong at any distance
+};
+
+struct Light {
+  LightKind kind = LightKind::kHeadlight;
+  Vector3 direction{0, 0, -1};  ///< kDirectional: in which it travels, world; any length but 0
+  Vector3 position{};           ///< kPoint: world
+  Color color{1, 1, 1};
+  double intensity = 1.0;  ///< >= 0
+};
+
+/// A picture of the surroundings: lights from everywhere, is mirrored in highlights. Not drawn itself.
+struct Environment {
+  std::string map;  ///< a file (.png or .exr, equirectangular), six files "A.png,B.png,..." (+x -x +y -y +z -z), or
+                    ///< a name of `environment_names()`; empty: none
+  double diffuse = 1.0;    ///< weight of the irradiance, >= 0
+  double specular = 0.3;   ///< weight of the reflection, >= 0
+  double roughness = 0.2;  ///< of the reflection's lobe, in [0, 1]
+};
+
+enum class ShadowKind {
+  kNone,
+  kVolume,  ///< optical depth towards each light, on a lattice over the bounds
+  kRays     ///< a ray towards each light from each place that is shaded: exact, slow
+};
+
+struct Lighting {
+  std::vector<Light> lights;
+  Environment environment;
+  Material material;
+  GradientMethod gradient = GradientMethod::kDefault;
+  /// Gradient magnitude at which shading is at half its strength, in units of value range / diagonal of the bounds;
+  /// below it light fades to what needs no normal, so that homogeneous regions are not noise. 0: full everywhere.
+  double gradient_threshold = 2.0;
+  bool is_two_sided = true;  ///< whether sides that look away from a light are lit as if they faced it
+  ShadowKind shadows = ShadowKind::kNone;
+  int shadow_resolution = 128;       ///< lattice points along each axis, in [8, 512]
+  int ambient_occlusion = 0;         ///< directions over the sphere, in [0, 1024]; 0: none
+  std::uint64_t occlusion_seed = 1;  ///< of the order of directions
+  bool is_lit() const { return !lights.empty() || !environment.map.empty(); }
+};
+
+/// Names of enumerators as on the command line and in scene files, and back.
+/// @throws Error (kInvalidArgument) that lists the names there are.
+std::string name_of(GradientMethod method);  ///< "default", "filter", "central", "vertex", "cell"
+GradientMethod gradient_method_from_name(const std::string& name);
+std::string name_of(LightKind kind);  ///< "headlight", "directional", "point"
+LightKind light_kind_from_name(const std::string& name);
+std::string name_of(ShadowKind kind);  ///< "none", "volume", "rays"
+ShadowKind shadow_kind_from_name(const std::string& name);
+
+/// @throws Error (kInvalidArgument) that names the member.
+void validate_lighting(const Lighting& lighting);
+
+/// An environment as the renderer looks it up. World directions; colours as displayed.
+struct EnvironmentMap {
+  /// Irradiance / pi as nine coefficients of spherical harmonics a colour (Ramamoorthi and Hanrahan 2001), the cosine
+  /// lobe already applied: light on a surface = sum of coefficients[i] * Y_i(normal).
+  std::array<std::array<float, 3>, 9> irradiance{};
+  int size = 0;                 ///< texels along the side of a face
+  std::vector<float> specular;  ///< [6 faces: +x -x +y -y +z -z][size][size][4], filtered for the roughness; OpenGL's
+                                ///< orientation of faces; the fourth channel is unused
+};
+
+/// Reads or makes the map that `environment` names, and filters it. Paths as given.
+/// @throws Error that names the file; kInvalidArgument that lists the names there are.
+EnvironmentMap make_environment_map(const Environment& environment);
+
+/// Embedded environments: name and one-line description.
+std::vector<std::pair<std::string, std::string>> environment_names();
+
+}  // namespace tetravox
