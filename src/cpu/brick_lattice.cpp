@@ -17,6 +17,17 @@ std::vector<float> weight_table(const grid::SeparableKernel& kernel, int parts) 
   return table;
 }
 
+/// The same for the derivative.
+std::vector<float> derivative_table(const grid::SeparableKernel& kernel, int parts) {
+  const int radius = kernel.radius();
+  std::vector<float> table;
+  for (int part = 0; part < parts; ++part) {
+    const double phase = static_cast<double>(part) / parts;
+    for (int i = 1 - radius; i <= radius; ++i) table.push_back(static_cast<float>(kernel.eval_derivative(phase - i)));
+  }
+  return table;
+}
+
 /// Convolves rows of `in` along one axis: `count` places `stride` apart become (cells * parts + 1). The other places of
 /// the block are [outer][inner], `inner` adjacent ones at a time.
 struct Convolution {
@@ -108,15 +119,20 @@ void BrickLattice::fill(const LatticeField& field, MarchBrick& brick) {
     brick.densities = records_.data();
     return;
   }
+  grid::Block values = block_;
+  if (!field.is_constant || field.is_nearest)
+    for (std::int64_t& count : values.count) ++count;
+  int parts = 1;
   if (field.kernel) {
-    filter_values(field, brick);
+    parts = filter_values(field, brick);
   } else {
-    if (!field.is_constant || field.is_nearest)
-      for (std::int64_t& count : block_.count) ++count;
+    block_ = values;
     values_.resize(static_cast<std::size_t>(block_.size()));
     field.reader->read(block_, values_.data());
   }
   if (field.is_nearest) spread_values(brick);
+  if (!field.others.empty()) fill_others(field, values, brick);
+  if (field.gradients != GradientSource::kNone) fill_gradients(field, values, parts, brick);
   if (field.is_constant) {
     brick.constants = values_.data();
   } else if (field.points) {
@@ -170,10 +186,12 @@ void BrickLattice::read_margin(const LatticeField& field) {
 void BrickLattice::divide_cells(const LatticeField& field, int parts, MarchBrick& brick) {
   for (int axis = 0; axis < 3; ++axis) brick.cells[axis] = static_cast<std::int32_t>(block_.count[axis] * parts);
   if (brick.is_uneven) place_planes(brick, parts);
-  convolve(*field.kernel, parts, values_);
+  const std::vector<float> weights = weight_table(*field.kernel, parts);
+  convolve({&weights, &weights, &weights}, parts, values_);
 }
 
-void BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick) {
+/// Returns into how many parts the cells are divided.
+int BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick) {
   read_margin(field);
   divide_cells(field, 1, brick);
   // The distance of a smooth field from its lattice falls with the square of the number of parts. It has the same sign
@@ -183,7 +201,67 @@ void BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick) {
   int parts = brick.has_missing ? 2 : 1;  // in the middle of a cell everything in reach counts
   while (parts < kMostParts && rate > field.allowed_rate * static_cast<float>(parts * parts)) parts *= 2;
   if (parts > 1) divide_cells(field, parts, brick);
+  if (field.gradients == GradientSource::kKernel) filter_gradients(field, parts, brick);
   for (int axis = 0; axis < 3; ++axis) block_.count[axis] = brick.cells[axis] + 1;
+  return parts;
+}
+
+/// Gradients at the nodes of the lattice: the derivative along one axis, the kernel itself along the others.
+void BrickLattice::filter_gradients(const LatticeField& field, int parts, const MarchBrick& brick) {
+  const std::vector<float> weights = weight_table(*field.kernel, parts);
+  const std::vector<float> slopes = derivative_table(*field.kernel, parts);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto weights_of = [&](int i) -> const std::vector<float>& { return i == axis ? slopes : weights; };
+    convolve({&weights_of(0), &weights_of(1), &weights_of(2)}, parts, coarse_gradients_);
+    gradients_.resize(4 * coarse_gradients_.size());
+    for (std::size_t i = 0; i < coarse_gradients_.size(); ++i) gradients_[4 * i + axis] = coarse_gradients_[i];
+    if (brick.is_uneven) rescale_gradients(axis, parts);
+  }
+}
+
+/// From differences a cell to differences a grid unit, where cells are not one grid unit long.
+void BrickLattice::rescale_gradients(int axis, int parts) {
+  const std::vector<float>& planes = cell_planes_[axis];
+  std::array<std::int64_t, 3> nodes{};
+  for (int i = 0; i < 3; ++i) nodes[i] = block_.count[i] * parts + 1;
+  const std::array<std::int64_t, 3> strides{1, nodes[0], nodes[0] * nodes[1]};
+  for (std::int64_t i = 0; i < nodes[0] * nodes[1] * nodes[2]; ++i) {
+    const auto cell =
+        static_cast<std::size_t>(std::min(i / strides[axis] % nodes[axis] / parts, block_.count[axis] - 1));
+    gradients_[4 * static_cast<std::size_t>(i) + axis] /= planes[cell + 1] - planes[cell];
+  }
+}
+
+/// `values`: the values that the lattice lies between.
+void BrickLattice::fill_gradients(const LatticeField& field, const grid::Block& values, int parts, MarchBrick& brick) {
+  if (field.gradients == GradientSource::kCentral) {
+    find_central_gradients(field.differences, values, margin_,
+                           parts > 1 || field.is_nearest ? coarse_gradients_ : gradients_);
+    if (parts > 1) refine_gradients(values.count, parts, coarse_gradients_, gradients_);
+    if (field.is_nearest)
+      spread_gradients(values.count, {brick.cells[0], brick.cells[1], brick.cells[2]}, coarse_gradients_, gradients_);
+  }
+  gradients_.resize(gradients_.size() + 4 * nodes_beyond(brick));
+  brick.gradients = gradients_.data();
+}
+
+/// Further fields, linear (or constant) between their values.
+void BrickLattice::fill_others(const LatticeField& field, const grid::Block& values, MarchBrick& brick) {
+  for (std::size_t i = 0; i < field.others.size(); ++i) {
+    std::vector<float>& nodes = margin_;
+    nodes.resize(static_cast<std::size_t>(values.size()));
+    field.others[i]->read(values, nodes.data());
+    if (field.is_constant) {
+      others_[i] = nodes;
+    } else {
+      nodes.resize(nodes.size() + kRecordPadding);
+      const std::size_t cells =
+          static_cast<std::size_t>((values.count[0] - 1) * (values.count[1] - 1) * values.count[2]);
+      others_[i].resize(4 * (cells + kRecordPadding));
+      field.kernels->make_records(nodes.data(), brick.cells, others_[i].data());
+    }
+    brick.others[i] = others_[i].data();
+  }
 }
 
 /// Pre-classification with a kernel: it is the densities of the values that are filtered, channel by channel.
@@ -200,14 +278,15 @@ void BrickLattice::filter_densities(const LatticeField& field, MarchBrick& brick
   }
 }
 
-void BrickLattice::convolve(const grid::SeparableKernel& kernel, int parts, std::vector<float>& nodes) {
-  const std::vector<float> weights = weight_table(kernel, parts);
-  const int taps = 2 * kernel.radius();
+/// `weights`: for each axis, [parts][taps].
+void BrickLattice::convolve(const std::array<const std::vector<float>*, 3>& weights, int parts,
+                            std::vector<float>& nodes) {
+  const int taps = static_cast<int>(weights[0]->size()) / parts;
   const auto& in = margin_block_.count;
   const std::int64_t nx = block_.count[0] * parts + 1, ny = block_.count[1] * parts + 1;
-  convolve_axis({in[2] * in[1], in[0], 1, block_.count[0], parts, taps}, weights, margin_, along_x_);
-  convolve_axis({in[2], in[1], nx, block_.count[1], parts, taps}, weights, along_x_, along_y_);
-  convolve_axis({1, in[2], nx * ny, block_.count[2], parts, taps}, weights, along_y_, nodes);
+  convolve_axis({in[2] * in[1], in[0], 1, block_.count[0], parts, taps}, *weights[0], margin_, along_x_);
+  convolve_axis({in[2], in[1], nx, block_.count[1], parts, taps}, *weights[1], along_x_, along_y_);
+  convolve_axis({1, in[2], nx * ny, block_.count[2], parts, taps}, *weights[2], along_y_, nodes);
 }
 
 /// Estimate of the distance of a field from the lattice of its nodes, by second differences: of the nodes, or of the

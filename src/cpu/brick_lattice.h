@@ -2,6 +2,7 @@
 
 /// A brick's values as the marcher wants them: small enough to stay in the cache.
 
+#include "src/cpu/brick_gradients.h"
 #include "src/cpu/kernels/kernels.h"
 #include "src/grid/frame.h"
 #include "src/grid/separable_kernel.h"
@@ -25,6 +26,9 @@ struct LatticeField {
   bool is_constant = false;                           ///< constant cells
   bool is_nearest = false;                            ///< of them: eighths of cells, each with the value of its corner
   float allowed_rate = 0.0f;                          ///< see MarchJob
+  GradientSource gradients = GradientSource::kNone;
+  DifferenceField differences;                   ///< of the values, for `kCentral`
+  std::vector<const grid::BlockReader*> others;  ///< further fields, for functions of several variables
 };
 
 /// Memory of one lattice at a time, used again and again.
@@ -47,10 +51,14 @@ class BrickLattice {
   void spread_values(MarchBrick& brick);
   void read_margin(const LatticeField& field);
   void divide_cells(const LatticeField& field, int parts, MarchBrick& brick);
-  void filter_values(const LatticeField& field, MarchBrick& brick);
+  int filter_values(const LatticeField& field, MarchBrick& brick);
   void filter_densities(const LatticeField& field, MarchBrick& brick);
-  void convolve(const grid::SeparableKernel& kernel, int parts, std::vector<float>& nodes);
+  void convolve(const std::array<const std::vector<float>*, 3>& weights, int parts, std::vector<float>& nodes);
   float measure_bend(const MarchBrick& brick) const;
+  void fill_gradients(const LatticeField& field, const grid::Block& values, int parts, MarchBrick& brick);
+  void filter_gradients(const LatticeField& field, int parts, const MarchBrick& brick);
+  void rescale_gradients(int axis, int parts);
+  void fill_others(const LatticeField& field, const grid::Block& values, MarchBrick& brick);
   void fill_records(const Kernels& kernels, const MarchBrick& brick);
   void fill_densities(const optics::ControlPointTable& points, const MarchBrick& brick);
 
@@ -61,6 +69,8 @@ class BrickLattice {
   // For filtering: values with a margin, and what becomes of them axis by axis.
   grid::Block margin_block_;
   std::vector<float> margin_, along_x_, along_y_;
+  std::vector<float> gradients_, coarse_gradients_;
+  std::array<std::vector<float>, 2> others_;
 };
 
 }  // namespace tetravox::cpu

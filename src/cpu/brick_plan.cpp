@@ -25,6 +25,9 @@ constexpr double kRoundingAtRate = 20.0;
 /// Extinctions that let all but this part of the tolerance through along the longest ray are none.
 constexpr double kHazeOfTolerance = 0.1;
 
+/// Cells a step at most where light is to follow the gradient.
+constexpr int kLongestLitStride = 2;
+
 /// The longest step, or the largest lattice cells, of which the field stays as near to its chords as `is_good` asks.
 template <class IsGood>
 void choose_step(const BrickSummaries& bricks, std::size_t brick, const IsGood& is_good, BrickPlan& plan) {
@@ -62,7 +65,8 @@ class Planner {
     if (!(min <= max)) return plan;
     // Samples that are counted on from the eye go through everything.
     const bool counts_samples = has_rate_ && !strides_at_rate_;
-    if (!counts_samples && !(sources_.steepness->largest_extinction(min, max) > allowed_haze_)) return plan;
+    const bool is_seen = sources_.steepness->largest_extinction(min, max) > allowed_haze_ || has_surface(min, max);
+    if (!counts_samples && !is_seen) return plan;
     plan.level = 0;
     if (sources_.is_constant || counts_samples || settings_.integrator == Integrator::kPre) return plan;
 
@@ -83,16 +87,25 @@ class Planner {
     }
     const BrickSummaries& bricks = sources_.grid->bricks;
     plan.is_curved = !is_good(bricks.deviation[0][brick]);
-    if (!is_even_ || bricks.has_missing[brick] != 0) return plan;
+    if (!is_even_ || bricks.has_missing[brick] != 0 || has_surface(min, max)) return plan;
     if (settings_.integrator != Integrator::kPost)
       choose_step(
           bricks, brick, [&](float deviation) { return is_good(deviation, kStridesPerRate); }, plan);
-    else if (min == max)
+    if (settings_.wants_gradients && plan.stride > 0) {
+      plan.stride = static_cast<std::uint8_t>(std::min(plan.stride << plan.level, kLongestLitStride));
+      plan.level = 0;
+    } else if (min == max && !settings_.wants_gradients)
       plan.level = 3;  // otherwise samples are counted in each cell
     return plan;
   }
 
  private:
+  bool has_surface(float min, float max) const {
+    const auto& values = settings_.surface_values;
+    const auto first = std::lower_bound(values.begin(), values.end(), min);
+    return first != values.end() && *first <= max;
+  }
+
   const PlanSources& sources_;
   const PlanSettings& settings_;
   float allowed_rate_, allowed_haze_;

@@ -28,6 +28,8 @@ struct PlanSettings {
   Integrator integrator = Integrator::kAntiderivative;
   double tolerance = 0.002;
   double samples_per_voxel = 0.0;
+  bool wants_gradients = false;       ///< values are not thinned out then, and steps are short
+  std::vector<float> surface_values;  ///< stored scalars, ascending: where one occurs a brick is drawn
 
   bool operator==(const PlanSettings&) const = default;
 };

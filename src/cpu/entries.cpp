@@ -190,7 +190,7 @@ void collect_rays(const Kernels& kernels, const FrameMesh& mesh, const RayGrid& 
       if (a_eye != b_eye) return a_eye;
       return a.depth != b.depth ? a.depth < b.depth : a.face < b.face;
     });
-    rays.rays.push_back({tile_column + pixel % kTileSize, tile_row + pixel / kTileSize, begin, end});
+    rays.rays.push_back({tile_column + pixel % kTileSize, tile_row + pixel / kTileSize, begin, end, 0, 0});
   }
 }
 

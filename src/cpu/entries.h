@@ -31,6 +31,7 @@ TileBins bin_faces(const FrameMesh& mesh, std::size_t face_count, std::size_t fi
 struct TileScratch {
   std::vector<FaceHit> hits;
   std::vector<std::uint32_t> first;
+  std::vector<ClipInterval> intervals;
   TileRays rays;
 };
 

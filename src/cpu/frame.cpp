@@ -45,6 +45,19 @@ CameraFrame make_camera_frame(const PreparedMesh& mesh, const Camera& camera, in
   return make_camera_frame(mesh.origin, mesh.world_per_local, camera, width, height);
 }
 
+std::array<double, 12> world_from_camera(const CameraFrame& frame, const Vector3& origin, double world_per_local) {
+  std::array<double, 12> matrix{};
+  for (int row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) matrix[4 * row + axis] = frame.axes[axis][row] * world_per_local;
+    matrix[4 * row + 3] = origin[row];
+  }
+  return matrix;
+}
+
+void measure_depth(const CameraFrame& frame, double world_per_local, Image& image) {
+  for (float& depth : image.depth) depth = static_cast<float>((depth - frame.eye[2]) * world_per_local);
+}
+
 Rays make_rays(const CameraFrame& frame, double world_per_local) {
   constexpr std::size_t kPadding = 16;  // kernels load whole vectors
   Rays rays;

@@ -8,6 +8,7 @@
 
 #include "src/cpu/kernels/kernels.h"
 #include "tetravox/camera.h"
+#include "tetravox/image.h"
 #include "tetravox/mesh.h"
 
 #include <array>
@@ -29,6 +30,12 @@ struct CameraFrame {
 CameraFrame make_camera_frame(const Vector3& origin, double world_per_local, const Camera& camera, int width,
                               int height);
 CameraFrame make_camera_frame(const PreparedMesh& mesh, const Camera& camera, int width, int height);
+
+/// Rows of a 3 x 4 matrix: places of the camera frame -> world. `origin`: as above.
+std::array<double, 12> world_from_camera(const CameraFrame& frame, const Vector3& origin, double world_per_local);
+
+/// Turns `Image::depth` from depths of the camera frame into world distances from the eye's plane.
+void measure_depth(const CameraFrame& frame, double world_per_local, Image& image);
 
 /// The arrays that a RayGrid views.
 struct Rays {

@@ -9,8 +9,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 namespace tetravox::cpu {
+
+/// What frames are drawn with beside camera and settings.
+struct FrameContext {
+  const Kernels& kernels;
+  const Progress& progress;
+  std::span<const PreparedGrid* const> clip_volumes;  ///< one a shape of the clipping, null where it is no volume
+  const EnvironmentMap* environment = nullptr;
+};
 
 /// Draws frames of one dataset. Not safe for concurrent calls.
 class FrameRenderer {
@@ -20,8 +29,8 @@ class FrameRenderer {
   /// The function is valid, and its extinctions are within what float can work with.
   virtual void set_transfer_function(const OpticalFunction& function) = 0;
   /// Draws into `image`, whose pixels are zero. Settings and camera are valid.
-  virtual void render(const Camera& camera, const RenderSettings& settings, const Kernels& kernels,
-                      const Progress& progress, Image& image, RenderStatistics& statistics) = 0;
+  virtual void render(const Camera& camera, const RenderSettings& settings, const FrameContext& context, Image& image,
+                      RenderStatistics& statistics) = 0;
   /// Bytes that the next frame needs beside what is held.
   virtual std::uint64_t missing_bytes(const RenderSettings& settings) const = 0;
   /// Bytes held for frames and tables.

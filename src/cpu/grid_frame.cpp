@@ -149,6 +149,7 @@ GridView make_grid_view(const PreparedGrid& grid, const grid::GridFrame& frame, 
     half_extent = std::max(half_extent, 0.5 * grid.bounds[axis].max - 0.5 * grid.bounds[axis].min);
   }
   view.world_per_local = half_extent > 0.0 ? half_extent : 1.0;
+  view.origin = center;
   view.camera = make_camera_frame(center, view.world_per_local, camera, width, height);
   // Offsets are taken from the centre, so that a grid far from the origin loses nothing.
   std::array<double, 12> grid_from_offset{}, offset_from_camera{}, offset_from_grid{}, camera_from_offset{};

@@ -20,6 +20,7 @@ struct GridView {
   std::array<double, 12> grid_from_camera{};  ///< rows of a 3 x 4 matrix
   std::array<double, 12> camera_from_grid{};
   grid::Point eye{};  ///< grid coordinates; of an orthographic camera: the direction it looks in
+  Vector3 origin{};   ///< world position of the local origin
   double world_per_local = 1.0;
 };
 

@@ -1,8 +1,10 @@
 #include "src/cpu/brick_lattice.h"
 #include "src/cpu/brick_plan.h"
+#include "src/cpu/clip_intervals.h"
 #include "src/cpu/filtered_field.h"
 #include "src/cpu/frame_renderer.h"
 #include "src/cpu/grid_frame.h"
+#include "src/cpu/illustration.h"
 #include "src/grid/summaries.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/steepness_table.h"
@@ -16,6 +18,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -65,10 +68,73 @@ Marches choose_marches(const Kernels& kernels, bool is_constant, const RenderSet
           kernels.stride_gentle_antiderivative};
 }
 
+Marches choose_illustrated_marches(const Kernels& kernels, bool is_constant, Integrator integrator) {
+  const auto both = [](Integrate cells, Integrate strides) { return Marches{cells, strides, cells, strides}; };
+  if (is_constant) return both(kernels.illustrate_march_cells, nullptr);
+  if (integrator == Integrator::kPartial)
+    return both(kernels.illustrate_march_partial, kernels.illustrate_stride_partial);
+  if (integrator == Integrator::kPost) return both(kernels.illustrate_march_post, nullptr);
+  return {kernels.illustrate_march_antiderivative, kernels.illustrate_stride_antiderivative,
+          kernels.illustrate_march_gentle_antiderivative, kernels.illustrate_stride_gentle_antiderivative};
+}
+
+/// The parts of a tile's rays that the clipping keeps.
+class TileIntervals {
+ public:
+  /// Finds them, and puts each ray at the first.
+  void find(const ClipScene& clip, const RayGrid& grid, int column, int row, MarchRays& rays) {
+    intervals_.clear();
+    next_.assign(MarchRays::kCount, 0);
+    end_.assign(MarchRays::kCount, 0);
+    for (int y = 0; y < std::min(kTileSize, grid.height - row); ++y)
+      for (int x = 0; x < std::min(kTileSize, grid.width - column); ++x) {
+        const auto ray = static_cast<std::size_t>(y * kTileSize + x);
+        next_[ray] = intervals_.size();
+        find_intervals(clip,
+                       {grid.column_offset[column + x], grid.column_slope[column + x], grid.row_offset[row + y],
+                        grid.row_slope[row + y], grid.z_near, std::numeric_limits<double>::infinity()},
+                       intervals_);
+        end_[ray] = intervals_.size();
+        rays.has_intervals |= end_[ray] > next_[ray] + 1;
+        if (!advance(ray, rays)) rays.z_far[ray] = kNothing;
+      }
+  }
+
+  /// What has been drawn of the rays that met a brick is not drawn again.
+  static void note_drawn(MarchRays& rays, int count) {
+    for (int i = 0; i < count; ++i) rays.z_near[rays.met.ray[i]] = rays.met.z_leave[i];
+  }
+
+  /// Moves the rays that have left their interval in the brick at hand to the next one; whether there are any.
+  bool advance_ended(MarchRays& rays) {
+    bool is_any_moved = false;
+    for (int i = 0; i < rays.ended_count; ++i) {
+      const auto ray = static_cast<std::size_t>(rays.ended[i]);
+      is_any_moved |= rays.z_far[ray] > rays.z_near[ray] && advance(ray, rays);
+    }
+    return is_any_moved;
+  }
+
+ private:
+  static constexpr float kNothing = -std::numeric_limits<float>::max();  // a ray that ends before it begins
+
+  bool advance(std::size_t ray, MarchRays& rays) {
+    if (next_[ray] == end_[ray]) return false;
+    const ClipInterval& interval = intervals_[next_[ray]++];
+    rays.z_near[ray] = interval.z_near;
+    rays.z_far[ray] = interval.z_far;
+    return true;
+  }
+
+  std::vector<ClipInterval> intervals_;
+  std::vector<std::size_t> next_, end_;  // of each ray
+};
+
 /// What one thread works with.
 struct Workspace {
   std::unique_ptr<MarchRays> rays = std::make_unique<MarchRays>();
   BrickLattice lattice;
+  TileIntervals intervals;
 };
 
 /// One frame: what all its tiles share.
@@ -81,6 +147,14 @@ struct FrameParts {
   Marches marches;
   const Kernels* kernels = nullptr;
   MarchJob job;
+  bool has_clipping = false;
+  ClipScene clip;
+  Illustration illustration;
+};
+
+/// The pixel in a tile's corner.
+struct TilePlace {
+  int column = 0, row = 0;
 };
 
 struct TileCounts {
@@ -108,10 +182,12 @@ class GridRenderer final : public FrameRenderer {
     optics::build_steepness_table(control_points_, scalar_map().stored_from_value(range.min),
                                   scalar_map().stored_from_value(range.max), steepness_);
     is_planned_ = false;
+    has_centroids_ = false;
+    ++function_number_;
   }
 
-  void render(const Camera& camera, const RenderSettings& settings, const Kernels& kernels, const Progress& progress,
-              Image& image, RenderStatistics& statistics) override;
+  void render(const Camera& camera, const RenderSettings& settings, const FrameContext& context, Image& image,
+              RenderStatistics& statistics) override;
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
     return estimate_render_memory(grid_.data, settings);
@@ -133,11 +209,18 @@ class GridRenderer final : public FrameRenderer {
   }
   const PreparedGrid& drawn() const { return field_.middles ? *field_.middles : grid_; }
   void prepare_filter(const RenderSettings& settings);
+  GradientSource choose_gradients(const RenderSettings& settings) const;
+  void describe(const RenderSettings& settings, FrameParts& frame);
+  ShadowedBody shadowed_body() const;
+  void prepare_shadows(const Camera& camera, const RenderSettings& settings, const FrameContext& context);
+  struct Pass;
+  void draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics);
   LatticeField lattice_field(const RenderSettings& settings, const Kernels& kernels) const;
   PlanSources plan_sources(const RenderSettings& settings) const;
   void plan(const RenderSettings& settings);
   MarchJob make_job(const RenderSettings& settings, const IntegratorTables& tables) const;
-  std::uint64_t draw_brick(const FrameParts& frame, const BinnedBrick& binned, Workspace& workspace) const;
+  std::uint64_t draw_brick(const FrameParts& frame, const TilePlace& place, const BinnedBrick& binned,
+                           Workspace& workspace) const;
   TileCounts draw_tile(const FrameParts& frame, std::size_t tile, Workspace& workspace, Image& image) const;
 
   const PreparedGrid& grid_;
@@ -147,6 +230,10 @@ class GridRenderer final : public FrameRenderer {
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
   optics::SteepnessTable steepness_;
+  bool has_centroids_ = false;
+  optics::CentroidTable centroids_;  // made at the first frame with light
+  std::uint64_t function_number_ = 0;
+  ShadowCache shadows_;
   bool is_planned_ = false;
   PlanSettings planned_for_;
   std::vector<BrickPlan> plans_;
@@ -164,7 +251,57 @@ LatticeField GridRenderer::lattice_field(const RenderSettings& settings, const K
   field.is_constant = is_constant(settings);
   field.is_nearest = field.is_constant && grid_.data.association == Association::kPoint;
   field.allowed_rate = allowed_rate_of(settings.tolerance, diagonal());
+  field.gradients = choose_gradients(settings);
+  field.differences = {&reader_, &frame_, drawn().data.value_dimensions(), 0,
+                       drawn().data.association == Association::kCell};
   return field;
+}
+
+GradientSource GridRenderer::choose_gradients(const RenderSettings& settings) const {
+  const GradientMethod method = settings.lighting.gradient;
+  if (method == GradientMethod::kVertex || method == GradientMethod::kCell)
+    throw Error(ErrorCode::kInvalidArgument,
+                "gradient method '" + name_of(method) + "' is for meshes; grids have 'filter' and 'central'");
+  if (!settings.lighting.is_lit() && settings.opacity_weight != OpacityWeight::kGradient) return GradientSource::kNone;
+  if (method == GradientMethod::kCentral) return GradientSource::kCentral;
+  if (field_.kernel) return GradientSource::kKernel;
+  // The kernels have the derivative of a trilinear cell at hand; in a constant one it is none.
+  const bool is_corner = method == GradientMethod::kFilter && !is_constant(settings);
+  return is_corner ? GradientSource::kNone : GradientSource::kCentral;
+}
+
+/// Fills the effects of a frame.
+void GridRenderer::describe(const RenderSettings& settings, FrameParts& frame) {
+  if (!has_centroids_) optics::build_centroid_table(antiderivative_, centroids_);
+  has_centroids_ = true;
+  IllustratedFrame illustrated{frame.view.camera,
+                               frame.view.origin,
+                               frame.view.world_per_local,
+                               scalar_map(),
+                               grid_.scalar_range,
+                               diagonal(),
+                               {},
+                               &centroids_};
+  const auto& axes = frame.view.camera.axes;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      for (int i = 0; i < 3; ++i)
+        illustrated.camera_from_gradient[3 * row + column] +=
+            axes[row][i] * frame_.grid_from_world[3 * column + i] * frame.view.world_per_local;
+  illustrate(settings, illustrated, frame.illustration);
+  shadows_.attach(settings, shadowed_body(), frame.view.camera, frame.illustration);
+}
+
+ShadowedBody GridRenderer::shadowed_body() const {
+  // The local frame of make_grid_view.
+  ShadowedBody body{drawn().bounds, {}, 0.0};
+  for (int axis = 0; axis < 3; ++axis) {
+    const ValueRange& bound = body.bounds[axis];
+    body.origin[axis] = 0.5 * bound.min + 0.5 * bound.max;
+    body.world_per_local = std::max(body.world_per_local, 0.5 * bound.max - 0.5 * bound.min);
+  }
+  if (!(body.world_per_local > 0.0)) body.world_per_local = 1.0;
+  return body;
 }
 
 void GridRenderer::prepare_filter(const RenderSettings& settings) {
@@ -180,7 +317,12 @@ PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
 }
 
 void GridRenderer::plan(const RenderSettings& settings) {
-  const PlanSettings wanted{settings.filter, settings.integrator, settings.tolerance, settings.samples_per_voxel};
+  PlanSettings wanted{settings.filter,           settings.integrator,
+                      settings.tolerance,        settings.samples_per_voxel,
+                      wants_gradients(settings), {}};
+  for (const Isosurface& surface : settings.surfaces)
+    wanted.surface_values.push_back(scalar_map().stored_from_value(surface.value));
+  std::sort(wanted.surface_values.begin(), wanted.surface_values.end());
   if (is_planned_ && wanted == planned_for_) return;
   plans_ = plan_bricks(plan_sources(settings), wanted);
   visible_.clear();
@@ -204,24 +346,38 @@ MarchJob GridRenderer::make_job(const RenderSettings& settings, const Integrator
 }
 
 /// Takes the rays of the workspace through a brick; returns how many segments they had.
-std::uint64_t GridRenderer::draw_brick(const FrameParts& frame, const BinnedBrick& binned, Workspace& workspace) const {
+std::uint64_t GridRenderer::draw_brick(const FrameParts& frame, const TilePlace& place, const BinnedBrick& binned,
+                                       Workspace& workspace) const {
   const BrickPlan& plan = plans_[binned.brick];
   MarchBrick brick = workspace.lattice.describe(drawn(), frame_, binned.brick, plan.level);
   brick.bounds = binned.bounds;
   MarchJob job = frame.job;
   job.rays = workspace.rays.get();
   job.brick = &brick;
+  job.column = place.column;
+  job.row = place.row;
   job.stride = plan.stride;
-  const int count = frame.kernels->clip_brick(job);
-  if (count == 0) return 0;
-  const ValueRange range = range_of(frame.sources, binned.brick);
-  brick.steepness = steepness_.largest_steepness(static_cast<float>(range.min), static_cast<float>(range.max));
-  brick.has_missing |= field_.kernel && drawn().missing_values > 0;  // a kernel reaches into other bricks
-  workspace.lattice.fill(frame.field, brick);
-  if (!plan.is_curved) brick.steepness = 0.0f;
   const Marches& marches = frame.marches;
-  if (plan.stride > 0) return (plan.is_gentle ? marches.gentle_strides : marches.strides)(job, count);
-  return (plan.is_gentle ? marches.gentle_cells : marches.cells)(job, count);
+  const Integrate march = plan.stride > 0 ? (plan.is_gentle ? marches.gentle_strides : marches.strides)
+                                          : (plan.is_gentle ? marches.gentle_cells : marches.cells);
+  std::uint64_t segments = 0;
+  bool is_filled = false;
+  // A ray that the clipping cuts into several parts passes once for each of those that lie in the brick.
+  do {
+    const int count = frame.kernels->clip_brick(job);
+    if (count == 0) continue;
+    if (!is_filled) {
+      const ValueRange range = range_of(frame.sources, binned.brick);
+      brick.steepness = steepness_.largest_steepness(static_cast<float>(range.min), static_cast<float>(range.max));
+      brick.has_missing |= field_.kernel && drawn().missing_values > 0;  // a kernel reaches into other bricks
+      workspace.lattice.fill(frame.field, brick);
+      if (!plan.is_curved) brick.steepness = 0.0f;
+      is_filled = true;
+    }
+    segments += march(job, count);
+    if (workspace.rays->has_intervals) TileIntervals::note_drawn(*workspace.rays, count);
+  } while (workspace.rays->ended_count > 0 && workspace.intervals.advance_ended(*workspace.rays));
+  return segments;
 }
 
 TileCounts GridRenderer::draw_tile(const FrameParts& frame, std::size_t tile, Workspace& workspace,
@@ -235,9 +391,10 @@ TileCounts GridRenderer::draw_tile(const FrameParts& frame, std::size_t tile, Wo
   std::copy(frame.view.grid_from_camera.begin(), frame.view.grid_from_camera.end(), start.grid_from_camera);
   for (int axis = 0; axis < 3; ++axis) start.upper[axis] = frame_.plane(axis, drawn().data.shape.dimensions[axis] - 1);
   frame.kernels->start_march(start);
+  if (frame.has_clipping) workspace.intervals.find(frame.clip, frame.rays.grid, column, row, *workspace.rays);
   for (std::size_t i = 0; i < bricks.size(); ++i) {
     if (i + 1 < bricks.size()) BrickLattice::prefetch(frame.field, drawn(), bricks[i + 1].brick);
-    counts.segments += draw_brick(frame, bricks[i], workspace);
+    counts.segments += draw_brick(frame, {column, row}, bricks[i], workspace);
   }
   const MarchRays& rays = *workspace.rays;
   for (int y = 0; y < std::min(kTileSize, image.height - row); ++y)
@@ -246,39 +403,81 @@ TileCounts GridRenderer::draw_tile(const FrameParts& frame, std::size_t tile, Wo
       float* pixel = image.pixel(column + x, row + y);
       std::copy_n(sum, 3, pixel);
       pixel[3] = 1.0f - sum[3];
+      if (!image.depth.empty())
+        image.depth[static_cast<std::size_t>(row + y) * image.width + column + x] = rays.depth[y * kTileSize + x];
     }
   counts.rays = static_cast<std::uint64_t>(std::count(rays.has_met, rays.has_met + MarchRays::kCount, 1));
   return counts;
 }
 
-void GridRenderer::render(const Camera& camera, const RenderSettings& settings, const Kernels& kernels,
-                          const Progress& progress, Image& image, RenderStatistics& statistics) {
+/// A picture, or the depths that a light sees.
+struct GridRenderer::Pass {
+  const Camera& camera;
+  const RenderSettings& settings;
+  bool has_effects = false;
+  const DepthRecord* record = nullptr;
+};
+
+void GridRenderer::render(const Camera& camera, const RenderSettings& settings, const FrameContext& context,
+                          Image& image, RenderStatistics& statistics) {
   // The spline would have to pass through the densities of each function: no table of the values does that.
   if (settings.integrator == Integrator::kPre && settings.filter.kind == FilterKind::kInterpolatingBspline)
     throw Error(
         ErrorCode::kInvalidArgument,
         "pre-classification does not go with the filter 'bspline-interpolating': choose 'bspline' or 'catmull-rom'");
+  const bool has_effects = wants_effects(settings);
+  if (has_effects) require_effects(settings, is_constant(settings));
   const support::Timer timer;
   prepare_filter(settings);
+  if (has_effects) prepare_shadows(camera, settings, context);
+  const double shadow_seconds = timer.seconds();
   plan(settings);
-  statistics.plan_seconds = timer.seconds();
+  statistics.plan_seconds = timer.seconds() - shadow_seconds;
+  draw({camera, settings, has_effects}, context, image, statistics);
+}
 
-  const IntegratorTables tables{&antiderivative_,
-                                &control_points_,
-                                settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,
-                                static_cast<float>(settings.tolerance) / kSegmentsOfTolerance,
-                                settings.samples,
-                                field_.kernel != nullptr};
+void GridRenderer::prepare_shadows(const Camera& camera, const RenderSettings& settings, const FrameContext& context) {
+  const auto draw_depths = [&](const Camera& light, const RenderSettings& light_settings, const DepthRecord& record) {
+    Image unused{light_settings.width, light_settings.height, {}};
+    unused.pixels.resize(4 * static_cast<std::size_t>(unused.width) * unused.height);
+    RenderStatistics uncounted;
+    plan(light_settings);
+    draw({light, light_settings, true, &record}, context, unused, uncounted);
+  };
+  shadows_.prepare(settings, shadowed_body(), camera, function_number_, draw_depths, context.progress);
+}
+
+/// Draws with the plans at hand.
+void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics) {
+  const RenderSettings& settings = pass.settings;
+  const Kernels& kernels = context.kernels;
+  const Progress& progress = context.progress;
+  const bool has_effects = pass.has_effects;
+  IntegratorTables tables{&antiderivative_,
+                          &control_points_,
+                          settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,
+                          static_cast<float>(settings.tolerance) / kSegmentsOfTolerance,
+                          settings.samples,
+                          field_.kernel != nullptr};
   FrameParts frame;
-  frame.view = make_grid_view(drawn(), frame_, camera, settings.width, settings.height);
+  tables.effects = &frame.illustration.effects;
+  frame.view = make_grid_view(drawn(), frame_, pass.camera, settings.width, settings.height);
   frame.rays = make_rays(frame.view.camera, frame.view.world_per_local);
   frame.bins = bin_bricks(drawn(), frame_, visible_, frame.view);
   frame.field = lattice_field(settings, kernels);
   frame.sources = plan_sources(settings);
-  frame.marches = choose_marches(kernels, is_constant(settings), settings);
+  frame.marches = has_effects ? choose_illustrated_marches(kernels, is_constant(settings), settings.integrator)
+                              : choose_marches(kernels, is_constant(settings), settings);
   frame.kernels = &kernels;
   frame.job = make_job(settings, tables);
-  frame.job.z_near = frame.rays.grid.z_near;
+  frame.job.grid = &frame.rays.grid;
+  if (has_effects) describe(settings, frame);
+  frame.illustration.effects.record = pass.record;
+  if (settings.wants_depth) frame.illustration.effects.depth = image.depth.data();
+  frame.has_clipping = !settings.clipping.shapes.empty();
+  if (frame.has_clipping)
+    frame.clip = make_clip_scene(settings.clipping, context.clip_volumes,
+                                 world_from_camera(frame.view.camera, frame.view.origin, frame.view.world_per_local));
   frame_bytes_ = frame.bins.bricks.size() * sizeof(BinnedBrick);
 
   std::atomic<std::uint64_t> segments{0}, met_rays{0};
@@ -294,6 +493,7 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
       tile_progress.tile_done();
     }
   });
+  if (settings.wants_depth) measure_depth(frame.view.camera, frame.view.world_per_local, image);
   statistics.segments = segments;
   statistics.rays = met_rays;
 }

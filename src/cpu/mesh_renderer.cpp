@@ -1,15 +1,20 @@
+#include "src/cpu/clip_intervals.h"
 #include "src/cpu/entries.h"
 #include "src/cpu/eye_cells.h"
 #include "src/cpu/frame.h"
 #include "src/cpu/frame_renderer.h"
+#include "src/cpu/illustration.h"
+#include "src/mesh/gradients.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/transparency_table.h"
+#include "src/support/memory.h"
 #include "src/support/threads.h"
 #include "tetravox/error.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <atomic>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,6 +41,29 @@ auto choose_walk(const Kernels& kernels, Association association, Integrator int
       break;
   }
   return is_gentle ? kernels.walk_gentle_antiderivative : kernels.walk_antiderivative;
+}
+
+auto choose_illustrated_walk(const Kernels& kernels, Association association, Integrator integrator, bool is_gentle) {
+  if (association == Association::kCell) return kernels.illustrate_walk_cells;
+  if (integrator == Integrator::kPartial) return kernels.illustrate_walk_partial;
+  if (integrator == Integrator::kPost) return kernels.illustrate_walk_post;
+  return is_gentle ? kernels.illustrate_walk_gentle_antiderivative : kernels.illustrate_walk_antiderivative;
+}
+
+/// Finds the parts of the rays that the clipping keeps, and leaves out rays of which it keeps none.
+void clip_rays(const ClipScene& clip, const RayGrid& grid, std::vector<ClipInterval>& scratch, TileRays& tile) {
+  tile.clips.clear();
+  std::erase_if(tile.rays, [&](TileRays::Ray& ray) {
+    scratch.clear();
+    find_intervals(clip,
+                   {grid.column_offset[ray.column], grid.column_slope[ray.column], grid.row_offset[ray.row],
+                    grid.row_slope[ray.row], grid.z_near, std::numeric_limits<double>::infinity()},
+                   scratch);
+    ray.clip_begin = static_cast<std::uint32_t>(tile.clips.size());
+    tile.clips.insert(tile.clips.end(), scratch.begin(), scratch.end());
+    ray.clip_end = static_cast<std::uint32_t>(tile.clips.size());
+    return scratch.empty();
+  });
 }
 
 /// Everything that the tiles of one frame share.
@@ -74,6 +102,12 @@ std::uint64_t bytes_of(const Frame& frame) {
          (frame.rays.column_offset.size() + frame.rays.row_offset.size()) * 2 * sizeof(float);
 }
 
+/// Gradients of a mesh as the kernels load them.
+struct MeshGradients {
+  GradientMethod method = GradientMethod::kDefault;
+  std::vector<mesh::Gradient> records;  ///< [vertices] or [cells]
+};
+
 class MeshRenderer final : public FrameRenderer {
  public:
   explicit MeshRenderer(const PreparedMesh& mesh) : mesh_(mesh) {}
@@ -83,10 +117,12 @@ class MeshRenderer final : public FrameRenderer {
     control_points_ = optics::build_control_point_table(function, map);
     if (mesh_.association == Association::kPoint)
       optics::build_antiderivative_table(function, map, mesh_.scalar_range, diagonal(), antiderivative_);
+    has_centroids_ = false;
+    ++function_number_;
   }
 
-  void render(const Camera& camera, const RenderSettings& settings, const Kernels& kernels, const Progress& progress,
-              Image& image, RenderStatistics& statistics) override;
+  void render(const Camera& camera, const RenderSettings& settings, const FrameContext& context, Image& image,
+              RenderStatistics& statistics) override;
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
     return estimate_render_memory(vertices_ ? 0 : mesh_.vertices.size(), mesh_.boundary.size(), settings);
@@ -94,42 +130,131 @@ class MeshRenderer final : public FrameRenderer {
 
   std::uint64_t bytes() const override {
     return (vertices_ ? mesh_.vertices.size() * 4 * sizeof(float) : 0) + frame_bytes_ + antiderivative_.bytes() +
-           control_points_.bytes();
+           control_points_.bytes() + gradients_.records.size() * sizeof(mesh::Gradient) +
+           centroids_.sums.size() * sizeof(std::int32_t);
   }
 
   Source source() const override { return Source::kWalk; }
   double diagonal() const override { return diagonal_of(mesh_.bounds); }
 
  private:
+  ShadowedBody shadowed_body() const { return {mesh_.bounds, mesh_.origin, mesh_.world_per_local}; }
+  struct Pass;
+  void prepare_effects(const RenderSettings& settings);
+  void describe(const RenderSettings& settings, Frame& frame, Illustration& illustration) const;
+  void draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics);
+
   const PreparedMesh& mesh_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
+  bool has_centroids_ = false;
+  optics::CentroidTable centroids_;  // made at the first frame with light
+  MeshGradients gradients_;
+  std::uint64_t function_number_ = 0;
+  ShadowCache shadows_;
   std::unique_ptr<float[]> vertices_;  // of the camera's frame; allocated at the first one
   std::uint64_t frame_bytes_ = 0;      // of what the last frame needed beside the vertices
 };
 
-void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, const Kernels& kernels,
-                          const Progress& progress, Image& image, RenderStatistics& statistics) {
-  std::atomic<std::uint64_t> segments{0}, stopped_rays{0}, rays{0};
-  if (!vertices_) vertices_ = std::make_unique_for_overwrite<float[]>(4 * mesh_.vertices.size());
-  const Frame frame = prepare_frame(mesh_, camera, settings, vertices_.get());
-  frame_bytes_ = bytes_of(frame);
+/// A picture, or the depths that a light sees.
+struct MeshRenderer::Pass {
+  const Camera& camera;
+  const RenderSettings& settings;
+  bool has_effects = false;
+  const DepthRecord* record = nullptr;
+};
 
-  const IntegratorTables tables{&antiderivative_, &control_points_,
-                                settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,
-                                static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, settings.samples};
-  const auto walk = choose_walk(kernels, mesh_.association, settings.integrator, antiderivative_.is_gentle);
+/// Makes what effects need and no frame changes.
+void MeshRenderer::prepare_effects(const RenderSettings& settings) {
+  if (!has_centroids_ && mesh_.association == Association::kPoint) {
+    optics::build_centroid_table(antiderivative_, centroids_);
+    has_centroids_ = true;
+  }
+  GradientMethod method = settings.lighting.gradient;
+  if (method == GradientMethod::kDefault) method = GradientMethod::kVertex;
+  if (method != GradientMethod::kVertex && method != GradientMethod::kCell)
+    throw Error(ErrorCode::kInvalidArgument,
+                "gradient method '" + name_of(method) + "' is for grids; meshes have 'vertex' and 'cell'");
+  if (!wants_gradients(settings) || gradients_.method == method) return;
+  const bool is_of_cells = method == GradientMethod::kCell;
+  support::require_memory((is_of_cells ? mesh_.cells.size() : mesh_.vertices.size()) * 4 * sizeof(float),
+                          "the gradients of the mesh");
+  gradients_.records = is_of_cells ? mesh::cell_gradients(mesh_) : mesh::vertex_gradients(mesh_);
+  gradients_.method = method;
+}
+
+/// Fills the effects of a frame, and points it at the gradients.
+void MeshRenderer::describe(const RenderSettings& settings, Frame& frame, Illustration& illustration) const {
+  frame.mesh.gradients = gradients_.records.empty() ? nullptr : gradients_.records.front().data();
+  frame.mesh.has_cell_gradients = gradients_.method == GradientMethod::kCell;
+  IllustratedFrame illustrated{frame.camera,
+                               mesh_.origin,
+                               mesh_.world_per_local,
+                               {mesh_.scalar_offset, mesh_.scalar_scale},
+                               mesh_.scalar_range,
+                               diagonal(),
+                               {},
+                               has_centroids_ ? &centroids_ : nullptr};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      illustrated.camera_from_gradient[3 * row + column] = frame.camera.axes[row][column];
+  illustrate(settings, illustrated, illustration);
+  shadows_.attach(settings, shadowed_body(), frame.camera, illustration);
+}
+
+void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, const FrameContext& context,
+                          Image& image, RenderStatistics& statistics) {
+  if (!vertices_) vertices_ = std::make_unique_for_overwrite<float[]>(4 * mesh_.vertices.size());
+  const bool has_effects = wants_effects(settings);
+  if (has_effects) {
+    require_effects(settings, mesh_.association == Association::kCell);
+    prepare_effects(settings);
+    shadows_.prepare(
+        settings, shadowed_body(), camera, function_number_,
+        [&](const Camera& light, const RenderSettings& light_settings, const DepthRecord& record) {
+          Image unused{light_settings.width, light_settings.height, {}};
+          unused.pixels.resize(4 * static_cast<std::size_t>(unused.width) * unused.height);
+          RenderStatistics uncounted;
+          draw({light, light_settings, true, &record}, context, unused, uncounted);
+        },
+        context.progress);
+  }
+  draw({camera, settings, has_effects}, context, image, statistics);
+}
+
+void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics) {
+  const RenderSettings& settings = pass.settings;
+  const Kernels& kernels = context.kernels;
+  Frame frame = prepare_frame(mesh_, pass.camera, settings, vertices_.get());
+  frame_bytes_ = bytes_of(frame);
+  Illustration illustration;
+  if (pass.has_effects) describe(settings, frame, illustration);
+  if (settings.wants_depth) illustration.effects.depth = image.depth.data();
+  illustration.effects.record = pass.record;
+
+  IntegratorTables tables{&antiderivative_, &control_points_,
+                          settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,
+                          static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, settings.samples};
+  tables.effects = &illustration.effects;
+  const auto walk =
+      pass.has_effects
+          ? choose_illustrated_walk(kernels, mesh_.association, settings.integrator, antiderivative_.is_gentle)
+          : choose_walk(kernels, mesh_.association, settings.integrator, antiderivative_.is_gentle);
+  const ClipScene clip = make_clip_scene(settings.clipping, context.clip_volumes,
+                                         world_from_camera(frame.camera, mesh_.origin, mesh_.world_per_local));
+  std::atomic<std::uint64_t> segments{0}, stopped_rays{0}, rays{0};
   tbb::enumerable_thread_specific<TileScratch> scratches;
-  TileProgress tile_progress(progress, frame.bins.tile_count());
+  TileProgress tile_progress(context.progress, frame.bins.tile_count());
   support::parallel_chunks(frame.bins.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
     TileScratch& scratch = scratches.local();
     for (std::size_t tile = begin; tile < end; ++tile) {
-      support::throw_if_cancelled(progress);
+      support::throw_if_cancelled(context.progress);
       if (!frame.bins.faces_of(tile).empty()) {
         collect_rays(kernels, frame.mesh, frame.rays.grid, frame.bins, tile, frame.first_eye_face,
                      frame.camera.is_orthographic, scratch);
+        if (!settings.clipping.shapes.empty()) clip_rays(clip, frame.rays.grid, scratch.intervals, scratch.rays);
         const WalkStatistics walked = walk({&frame.mesh, &frame.rays.grid, &tables, &scratch.rays, image.pixels.data(),
-                                            settings.use_early_ray_termination, progress.cancelled});
+                                            settings.use_early_ray_termination, context.progress.cancelled});
         segments += walked.segments;
         stopped_rays += walked.stopped_rays;
         rays += scratch.rays.rays.size();
@@ -137,6 +262,7 @@ void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, 
       tile_progress.tile_done();
     }
   });
+  if (settings.wants_depth) measure_depth(frame.camera, mesh_.world_per_local, image);
   statistics.segments = segments;
   statistics.rays = rays;
   statistics.stopped_rays = stopped_rays;

@@ -7,14 +7,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace tetravox {
 
 struct Renderer::State {
   std::unique_ptr<cpu::FrameRenderer> frames;
   bool has_function = false;
+  std::vector<const PreparedGrid*> clip_volumes = {};
+  EnvironmentMap environment = {};
 };
 
 namespace {
@@ -57,6 +62,13 @@ OpticalFunction limit_extinction(const OpticalFunction& function, double longest
   return limited;
 }
 
+void require_clip_volumes(const Clipping& clipping, const std::vector<const PreparedGrid*>& volumes) {
+  for (std::size_t i = 0; i < clipping.shapes.size(); ++i)
+    if (std::holds_alternative<ClipVolume>(clipping.shapes[i].shape) && !volumes[i])
+      throw Error(ErrorCode::kInvalidArgument,
+                  "shape " + std::to_string(i) + " of the clipping is a volume: set its grid before drawing");
+}
+
 void require_source(const RenderSettings& settings, Source source) {
   if (!settings.source || *settings.source == source) return;
   const bool is_grid = source == Source::kMarch;
@@ -93,8 +105,13 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
   Image image{settings.width, settings.height, {}, {}};
   RenderStatistics drawn;
   support::with_threads(settings.threads, [&] {
-    image.pixels.resize(4 * static_cast<std::size_t>(settings.width) * settings.height);
-    frames.render(camera, settings, kernels, progress, image, drawn);
+    const std::size_t pixels = static_cast<std::size_t>(settings.width) * settings.height;
+    image.pixels.resize(4 * pixels);
+    if (settings.wants_depth) image.depth.assign(pixels, std::numeric_limits<float>::infinity());
+    std::vector<const PreparedGrid*> volumes = state_->clip_volumes;
+    volumes.resize(settings.clipping.shapes.size());
+    require_clip_volumes(settings.clipping, volumes);
+    frames.render(camera, settings, {kernels, progress, volumes, &state_->environment}, image, drawn);
   });
   drawn.seconds = timer.seconds();
   drawn.threads = settings.threads > 0 ? settings.threads : support::hardware_threads();
@@ -102,6 +119,13 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
   if (statistics) *statistics = drawn;
   return image;
 }
+
+void Renderer::set_clip_volume(std::size_t shape, const PreparedGrid& grid) {
+  if (state_->clip_volumes.size() <= shape) state_->clip_volumes.resize(shape + 1);
+  state_->clip_volumes[shape] = &grid;
+}
+
+void Renderer::set_environment(EnvironmentMap map) { state_->environment = std::move(map); }
 
 std::uint64_t Renderer::bytes() const { return state_->frames->bytes(); }
 

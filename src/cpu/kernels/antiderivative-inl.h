@@ -31,6 +31,7 @@ class AntiderivativeIntegrator {
     Float densities[4];
   };
   using Front = Point;
+  static constexpr bool kTakesPlaces = false;
 
   explicit AntiderivativeIntegrator(const IntegratorTables& tables)
       : table_(*tables.antiderivative),
@@ -285,6 +286,8 @@ class AntiderivativeIntegrator {
 /// instead of three.
 class GentleAntiderivativeIntegrator {
  public:
+  static constexpr bool kTakesPlaces = false;
+
   /// The scalar at the front, the node that stands for it, and the antiderivatives there.
   struct Front {
     Float position;  // in nodes

@@ -6,7 +6,8 @@
 
 namespace tetravox::cpu {
 
-void add_walk_kernels(Kernels& kernels);   ///< of meshes
-void add_march_kernels(Kernels& kernels);  ///< of grids
+void add_walk_kernels(Kernels& kernels);    ///< of meshes
+void add_march_kernels(Kernels& kernels);   ///< of grids
+void add_effect_kernels(Kernels& kernels);  ///< of both, with effects
 
 }  // namespace tetravox::cpu

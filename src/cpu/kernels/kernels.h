@@ -5,6 +5,7 @@
 /// The kernels are compiled once for each instruction set and chosen at run time (kernels.cpp). All of them use the
 /// same operations in the same order, without fused multiply-add, so that every instruction set gives the same bits.
 
+#include "src/cpu/kernels/effects.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/steepness_table.h"
 #include "src/optics/transparency_table.h"
@@ -39,6 +40,10 @@ struct FrameMesh {
   const TetrahedronLinks* cells = nullptr;
   const float* cell_scalars = nullptr;  ///< [cells], or null for point data
   const BoundaryFace* faces = nullptr;  ///< where rays enter: the boundary, then the faces of cells around the eye
+  const float* gradients = nullptr;     ///< [vertices][4], or [cells][4] where `has_cell_gradients`; for effects
+  bool has_cell_gradients = false;
+  const float* others[2] = {};  ///< further fields, [vertices] or [cells]; for functions of several variables
+  bool is_cell_field[2] = {};
 };
 
 /// What integrators look up; each uses one or two of them.
@@ -48,7 +53,8 @@ struct IntegratorTables {
   const optics::TransparencyTable* transparency = nullptr;
   float tolerance = 5e-5f;
   int samples = 8;
-  bool may_overshoot = false;  ///< whether scalars may lie beyond the range of the data
+  bool may_overshoot = false;        ///< whether scalars may lie beyond the range of the data
+  const Effects* effects = nullptr;  ///< of the kernels with effects
 };
 
 /// Where a ray enters the mesh.
@@ -61,10 +67,12 @@ struct Entry {
 struct TileRays {
   struct Ray {
     int column = 0, row = 0;
-    std::uint32_t begin = 0, end = 0;  ///< into entries
+    std::uint32_t begin = 0, end = 0;            ///< into entries
+    std::uint32_t clip_begin = 0, clip_end = 0;  ///< into clips; none: all of the ray in front of the eye is drawn
   };
   std::vector<Ray> rays;
   std::vector<Entry> entries;
+  std::vector<ClipInterval> clips;  ///< of one ray after the other, ascending and apart
 };
 
 /// A face of `FrameMesh::faces` found in a pixel.
@@ -106,7 +114,11 @@ struct MarchRays {
   alignas(64) float start[kCount][4];   ///< origin (at depth 0 of the camera frame), world length of a unit of depth
   alignas(64) float course[kCount][4];  ///< direction, for one unit of depth; nothing
   alignas(64) float sums[kCount][4];    ///< red, green, blue, transmittance
-  alignas(64) float z_far[kCount];      ///< where the ray ends: infinite, or below everything once it is settled
+  alignas(64) float z_near[kCount];     ///< where what is drawn of the ray begins: the eye, or a clip interval
+  alignas(64) float z_far[kCount];      ///< where it ends: infinite, or below everything once the ray is settled
+  alignas(64) float depth[kCount];      ///< see Effects::depth
+  alignas(64) float z_left[kCount];     ///< with effects: where the ray has left the last brick, and its scalar there
+  alignas(64) float scalar_left[kCount];
   // For cutting with bricks: the same axis by axis, and 1 / direction (anything for rays parallel to the axis' planes).
   alignas(64) float origin[3][kCount], direction[3][kCount], inverse[3][kCount];
   bool has_parallel[3];                      ///< whether a ray is
@@ -121,8 +133,11 @@ struct MarchRays {
     alignas(64) float z_enter[kCount + kPadding], z_leave[kCount + kPadding];
     alignas(64) std::int32_t cells[kCount + kPadding];  ///< about how many cells it crosses
   };
-  Met met;       ///< by the number of cells
-  Met unsorted;  ///< scratch: in order of pixels
+  Met met;                     ///< by the number of cells
+  Met unsorted;                ///< scratch: in order of pixels
+  bool has_intervals = false;  ///< whether rays may have more than one clip interval
+  int ended_count = 0;
+  std::int32_t ended[kCount];  ///< where they may: rays whose interval ends before they leave the brick at hand
 };
 
 /// Floats behind the nodes, and records behind the records, that kernels may touch.
@@ -140,6 +155,8 @@ struct MarchBrick {
       nullptr;  ///< [z nodes][y cells][x cells][4]: the corners (x, y), (x+1, y), (x, y+1), (x+1, y+1)
   const float* densities = nullptr;  ///< [z nodes][y nodes][x nodes][4] instead: rho, rho * colour
   const float* constants = nullptr;  ///< [z cells][y cells][x cells] instead, where the scalar is constant in each cell
+  const float* gradients = nullptr;  ///< [z nodes][y nodes][x nodes][4], or like `constants`; in grid coordinates
+  const float* others[2] = {};       ///< further fields, like `records` or like `constants`
   bool has_missing = false;          ///< whether a corner is not a number
   float steepness = 0.0f;            ///< largest change of density with the scalar in the brick
 };
@@ -149,9 +166,10 @@ struct MarchJob {
   const MarchBrick* brick = nullptr;
   const IntegratorTables* tables = nullptr;
   const optics::SteepnessTable* steepness = nullptr;
-  float allowed_rate = 0.0f;  ///< error in colour for one unit of world length that a segment may have
-  float most_pieces = 12.0f;  ///< that a cell is cut into
-  float z_near = 0.0f;
+  float allowed_rate = 0.0f;      ///< error in colour for one unit of world length that a segment may have
+  float most_pieces = 12.0f;      ///< that a cell is cut into
+  const RayGrid* grid = nullptr;  ///< for effects, with the tile's corner
+  int column = 0, row = 0;
   float stride = 1.0f;           ///< lattice cells
   float sample_distance = 0.0f;  ///< world length between samples at a fixed rate, which goes before `stride`
   bool use_early_ray_termination = true;
@@ -201,6 +219,20 @@ struct Kernels {
   std::uint64_t (*march_cells)(const MarchJob& job,
                                int count) = nullptr;           ///< constant cells, exact with every integrator
   WalkStatistics (*walk_cells)(const WalkJob& job) = nullptr;  ///< cell data, exact with every integrator
+  /// The same with what `IntegratorTables::effects` asks for.
+  WalkStatistics (*illustrate_walk_antiderivative)(const WalkJob& job) = nullptr;
+  WalkStatistics (*illustrate_walk_gentle_antiderivative)(const WalkJob& job) = nullptr;
+  WalkStatistics (*illustrate_walk_partial)(const WalkJob& job) = nullptr;
+  WalkStatistics (*illustrate_walk_post)(const WalkJob& job) = nullptr;
+  WalkStatistics (*illustrate_walk_cells)(const WalkJob& job) = nullptr;
+  std::uint64_t (*illustrate_march_antiderivative)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*illustrate_march_gentle_antiderivative)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*illustrate_stride_antiderivative)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*illustrate_stride_gentle_antiderivative)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*illustrate_stride_partial)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*illustrate_march_partial)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*illustrate_march_post)(const MarchJob& job, int count) = nullptr;
+  std::uint64_t (*illustrate_march_cells)(const MarchJob& job, int count) = nullptr;
 };
 
 /// Names of the instruction sets that were compiled in and that this machine has, best first.

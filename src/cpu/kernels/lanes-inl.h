@@ -32,6 +32,10 @@ struct Lanes {
   HWY_ALIGN std::uint32_t alive[kLanes];  ///< all bits set while the ray is in a cell
   std::uint32_t ray[kLanes];              ///< index into TileRays::rays, or kNoRay
   std::uint32_t next_entry[kLanes];
+  HWY_ALIGN float z_near[kLanes], z_far[kLanes];  ///< what is drawn of the ray: from the eye, or a clip interval
+  std::uint32_t next_clip[kLanes];
+  HWY_ALIGN float depth[kLanes];  ///< see Effects::depth
+  HWY_ALIGN std::int32_t pixel[kLanes];
 };
 
 constexpr std::uint32_t kNoRay = 0xFFFFFFFFu;

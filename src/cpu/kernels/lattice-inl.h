@@ -119,6 +119,19 @@ struct LatticeRays {
     return hn::Min(hn::Max(at, constant(0.0f)), constant(1.0f));
   }
 
+  /// Sides of the cells at hand, in grid coordinates.
+  HWY_INLINE void find_cell_size(Float size[3]) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!brick_.is_uneven) {
+        size[axis] = constant((brick_.upper[axis] - brick_.lower[axis]) / static_cast<float>(brick_.cells[axis]));
+        continue;
+      }
+      const Int index = hn::Min(hn::Max(indices[axis], hn::Zero(kInt)), hn::Set(kInt, brick_.cells[axis] - 1));
+      size[axis] = hn::Sub(hn::GatherIndex(kFloat, brick_.planes[axis] + 1, index),
+                           hn::GatherIndex(kFloat, brick_.planes[axis], index));
+    }
+  }
+
  private:
   /// Finds the cells again where the planes are not equally spaced.
   HWY_NOINLINE void start_uneven(const Course& course, int nodes_more) {

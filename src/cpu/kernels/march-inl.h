@@ -64,6 +64,25 @@ HWY_INLINE CellCubic make_cubic(const CellCorners& corners, const LatticeRays& r
           multiply_add(dz, rise[1], multiply_add(z, rise[2], low[2])), hn::Mul(dz, rise[2])};
 }
 
+/// Largest change of density with the scalar over a range (see optics::SteepnessTable).
+HWY_INLINE Float find_steepness(const optics::SteepnessTable& table, Float low, Float high) {
+  const auto bin = [&](Float scalar) {
+    const Float at = hn::Mul(hn::Sub(scalar, constant(table.first)), constant(table.bins_per_scalar));
+    return hn::ConvertTo(kInt, hn::Min(hn::Max(at, constant(0.0f)), constant(optics::SteepnessTable::kBins - 1)));
+  };
+  const Int first = bin(low), last = bin(high);
+  const Int count = hn::Add(hn::Sub(last, first), hn::Set(kInt, 1));
+  // The exponent of a float is the logarithm of the number.
+  const Int level = hn::Sub(hn::ShiftRight<23>(hn::BitCast(kInt, hn::ConvertTo(kFloat, count))), hn::Set(kInt, 127));
+  const Int width = hn::BitCast(kInt, hn::ShiftLeft<23>(hn::Add(level, hn::Set(kInt, 127))));
+  const Int bins = hn::ConvertTo(kInt, hn::BitCast(kFloat, width));
+  const Int row = hn::Mul(level, hn::Set(kInt, optics::SteepnessTable::kBins));
+  const float* values = table.steepness.data();
+  const Int end = hn::Add(hn::Sub(last, bins), hn::Set(kInt, 1));
+  return hn::Max(hn::GatherIndex(kFloat, values, hn::Add(row, first)),
+                 hn::GatherIndex(kFloat, values, hn::Add(row, end)));
+}
+
 /// Trilinear cells.
 template <class Integrator>
 class Marcher {
@@ -128,7 +147,7 @@ class Marcher {
     const Float margin = hn::Mul(constant(1.5f), cubic.bend());
     const Float low = hn::Sub(hn::Min(segment.scalar_front, segment.scalar_back), margin);
     const Float high = hn::Add(hn::Max(segment.scalar_front, segment.scalar_back), margin);
-    const Float rate = hn::Mul(bend, find_steepness(low, high));
+    const Float rate = hn::Mul(bend, find_steepness(*job_.steepness, low, high));
     const Float wanted = hn::Ceil(hn::Sqrt(hn::Mul(rate, constant(1.0f / job_.allowed_rate))));
     const Float pieces = hn::Min(hn::Max(wanted, constant(1.0f)), constant(job_.most_pieces));
     const Float share = hn::Div(constant(1.0f), pieces);
@@ -144,26 +163,6 @@ class Marcher {
       piece.scalar_front = piece.scalar_back;
       number = hn::Add(number, constant(1.0f));
     }
-  }
-
-  /// Largest change of density with the scalar over a range (see optics::SteepnessTable).
-  HWY_INLINE Float find_steepness(Float low, Float high) const {
-    const optics::SteepnessTable& table = *job_.steepness;
-    const auto bin = [&](Float scalar) {
-      const Float at = hn::Mul(hn::Sub(scalar, constant(table.first)), constant(table.bins_per_scalar));
-      return hn::ConvertTo(kInt, hn::Min(hn::Max(at, constant(0.0f)), constant(optics::SteepnessTable::kBins - 1)));
-    };
-    const Int first = bin(low), last = bin(high);
-    const Int count = hn::Add(hn::Sub(last, first), hn::Set(kInt, 1));
-    // The exponent of a float is the logarithm of the number.
-    const Int level = hn::Sub(hn::ShiftRight<23>(hn::BitCast(kInt, hn::ConvertTo(kFloat, count))), hn::Set(kInt, 127));
-    const Int width = hn::BitCast(kInt, hn::ShiftLeft<23>(hn::Add(level, hn::Set(kInt, 127))));
-    const Int bins = hn::ConvertTo(kInt, hn::BitCast(kFloat, width));
-    const Int row = hn::Mul(level, hn::Set(kInt, optics::SteepnessTable::kBins));
-    const float* values = table.steepness.data();
-    const Int end = hn::Add(hn::Sub(last, bins), hn::Set(kInt, 1));
-    return hn::Max(hn::GatherIndex(kFloat, values, hn::Add(row, first)),
-                   hn::GatherIndex(kFloat, values, hn::Add(row, end)));
   }
 
   const MarchJob& job_;

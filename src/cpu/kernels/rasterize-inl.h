@@ -44,8 +44,8 @@ HWY_INLINE Float edge_product(const ShearedVertex& a, const ShearedVertex& b, Ma
   return hn::Max(product, constant(0.0f));
 }
 
-void rasterize_face(const FrameMesh& mesh, const RayGrid& rays, const BinnedFace& face, int tile_column, int tile_row,
-                    std::vector<FaceHit>& hits) {
+inline void rasterize_face(const FrameMesh& mesh, const RayGrid& rays, const BinnedFace& face, int tile_column,
+                           int tile_row, std::vector<FaceHit>& hits) {
   const BoundaryFace& entry = mesh.faces[face.face];
   const float* vertex[3];
   for (int k = 0; k < 3; ++k) vertex[k] = mesh.vertices + 4 * static_cast<std::size_t>(entry.vertices[k]);

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
@@ -29,6 +30,10 @@ inline void start_march(const MarchStart& start) {
   const Float zero = constant(0.0f), one = constant(1.0f), never = constant(kNever);
   std::fill_n(tile.has_parallel, 3, false);
   std::fill_n(tile.has_met, MarchRays::kCount, std::uint8_t{0});
+  std::fill_n(tile.z_near, MarchRays::kCount, grid.z_near);
+  std::fill_n(tile.z_left, MarchRays::kCount, -kNever);
+  std::fill_n(tile.depth, MarchRays::kCount, std::numeric_limits<float>::infinity());
+  tile.has_intervals = false;
   for (int row = 0; row < kTileSize; ++row) {
     const bool is_row = start.row + row < grid.height;
     const int y = std::min(start.row + row, grid.height - 1);
@@ -103,6 +108,15 @@ inline void sort_rays(MarchRays& rays, int count) {
   }
 }
 
+/// Writes down the rays whose clip interval ends before they leave the brick.
+HWY_NOINLINE inline void note_ended(MarchRays& rays, int first, Mask ended) {
+  if (hn::AllFalse(kFloat, ended)) return;
+  HWY_ALIGN std::int32_t lanes[kLanes];
+  hn::Store(hn::IfThenElseZero(int_mask(ended), hn::Set(kInt, 1)), kInt, lanes);
+  for (std::size_t i = 0; i < kLanes; ++i)
+    if (lanes[i]) rays.ended[rays.ended_count++] = first + static_cast<std::int32_t>(i);
+}
+
 /// Cuts the rays with the brick's box (Kay and Kajiya 1986) and gathers those that meet it. The plane between two
 /// bricks gives both the same depth, so that nothing is lost or met twice.
 inline int clip_brick(const MarchJob& job) {
@@ -118,15 +132,21 @@ inline int clip_brick(const MarchJob& job) {
       (bounds.row_end - bounds.row_begin) * (bounds.column_end - bounds.column_begin) < kTileSize * kTileSize / 2;
   MarchRays::Met& met = wants_sort ? rays.unsorted : rays.met;
   int count = 0;
+  rays.ended_count = 0;
   for (int row = bounds.row_begin; row < bounds.row_end; ++row)
     for (int column = bounds.column_begin / kStep * kStep; column < bounds.column_end; column += kStep) {
       const int first = row * kTileSize + column;
-      Float enter = constant(job.z_near), leave = hn::Load(kFloat, rays.z_far + first);
+      Float enter = hn::Load(kFloat, rays.z_near + first), leave = constant(kNever);
       for (int axis = 0; axis < 3; ++axis) {
         const Slab slab = clip_slab(rays, brick, axis, first);
         enter = hn::Max(enter, slab.enter);
         leave = hn::Min(leave, slab.leave);
       }
+      const Float far = hn::Load(kFloat, rays.z_far + first);
+      if (HWY_UNLIKELY(rays.has_intervals))
+        note_ended(rays, first,
+                   hn::And(hn::And(hn::Lt(far, leave), hn::Gt(far, constant(-kNever))), hn::Gt(leave, enter)));
+      leave = hn::Min(leave, far);
       const Int columns = hn::Iota(kInt, column);
       const auto inside = hn::And(hn::Gt(columns, hn::Set(kInt, bounds.column_begin - 1)),
                                   hn::Lt(columns, hn::Set(kInt, bounds.column_end)));

@@ -12,6 +12,7 @@
 #include "src/cpu/kernels/lattice-inl.h"
 #include "src/cpu/kernels/rays-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
+#include "src/cpu/kernels/shading-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 
 #include <algorithm>
@@ -27,29 +28,99 @@ class LatticeSampler {
       : records_(brick.records), slice_(4 * static_cast<std::ptrdiff_t>(brick.cells[0]) * brick.cells[1]) {
     for (int axis = 0; axis < 3; ++axis) last_cell_[axis] = static_cast<float>(brick.cells[axis] - 1);
     row_ = static_cast<float>(brick.cells[0]);
-    layer_ = row_ * static_cast<float>(brick.cells[1]);
+    rows_ = static_cast<float>(brick.cells[1]);
+    layer_ = row_ * rows_;
   }
 
   /// `at`: lattice coordinates. A hair beyond the brick the field goes on as in its last cells.
-  HWY_INLINE Float eval(const Float at[3]) const {
+  HWY_INLINE Float eval(const Float at[3]) const { return eval_records(records_, at); }
+
+  /// Of any field with a record a cell.
+  HWY_INLINE Float eval_records(const float* records, const Float at[3]) const {
     Float cell[3], t[3];
+    find_cell(at, cell, t);
+    const Uint record = number_of(cell, row_, layer_);
+    const Record low = load_table_records(records, record), high = load_table_records(records + slice_, record);
+    const auto mix_square = [&](const Record& r) { return mixed(t[1], mixed(t[0], r.x, r.y), mixed(t[0], r.z, r.w)); };
+    return mixed(t[2], mix_square(low), mix_square(high));
+  }
+
+  /// The derivative of the field along the lattice's axes.
+  HWY_INLINE Triple eval_slope(const Float at[3]) const {
+    Float cell[3], t[3];
+    find_cell(at, cell, t);
+    const Uint record = number_of(cell, row_, layer_);
+    const Record low = load_table_records(records_, record), high = load_table_records(records_ + slice_, record);
+    const auto along_x = [&](const Record& r) { return mixed(t[1], hn::Sub(r.y, r.x), hn::Sub(r.w, r.z)); };
+    const auto along_y = [&](const Record& r) { return hn::Sub(mixed(t[0], r.z, r.w), mixed(t[0], r.x, r.y)); };
+    const auto square = [&](const Record& r) { return mixed(t[1], mixed(t[0], r.x, r.y), mixed(t[0], r.z, r.w)); };
+    return {mixed(t[2], along_x(low), along_x(high)), mixed(t[2], along_y(low), along_y(high)),
+            hn::Sub(square(high), square(low))};
+  }
+
+  /// Gradients at the nodes (MarchBrick::gradients), trilinear in between.
+  HWY_INLINE Triple eval_gradient(const float* gradients, const Float at[3]) const {
+    Float cell[3], t[3];
+    find_cell(at, cell, t);
+    const float row = row_ + 1.0f, layer = row * (rows_ + 1.0f);
+    const Uint node = number_of(cell, row, layer);
+    const auto row_nodes = static_cast<std::uint32_t>(row), layer_nodes = static_cast<std::uint32_t>(layer);
+    const auto load = [&](std::uint32_t offset) {
+      const Record r = load_table_records(gradients, hn::Add(node, hn::Set(kUint, offset)));
+      return Triple{r.x, r.y, r.z};
+    };
+    const auto edge = [&](std::uint32_t offset) { return mix(t[0], load(offset), load(offset + 1)); };
+    const auto square = [&](std::uint32_t offset) { return mix(t[1], edge(offset), edge(offset + row_nodes)); };
+    return mix(t[2], square(0), square(layer_nodes));
+  }
+
+ private:
+  static HWY_INLINE Float mixed(Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); }
+
+  HWY_INLINE void find_cell(const Float at[3], Float cell[3], Float t[3]) const {
     for (int axis = 0; axis < 3; ++axis) {
       const Float inside = hn::Min(hn::Max(at[axis], constant(0.0f)), constant(last_cell_[axis]));
       cell[axis] = hn::ConvertTo(kFloat, hn::ConvertTo(kInt, inside));
       t[axis] = hn::Sub(at[axis], cell[axis]);
     }
-    const Float index = multiply_add(cell[2], constant(layer_), multiply_add(cell[1], constant(row_), cell[0]));
-    const Uint record = hn::BitCast(kUint, hn::ConvertTo(kInt, index));
-    const Record low = load_table_records(records_, record), high = load_table_records(records_ + slice_, record);
-    const auto mix = [](Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); };
-    const auto mix_square = [&](const Record& r) { return mix(t[1], mix(t[0], r.x, r.y), mix(t[0], r.z, r.w)); };
-    return mix(t[2], mix_square(low), mix_square(high));
+  }
+  static HWY_INLINE Uint number_of(const Float cell[3], float row, float layer) {
+    const Float index = multiply_add(cell[2], constant(layer), multiply_add(cell[1], constant(row), cell[0]));
+    return hn::BitCast(kUint, hn::ConvertTo(kInt, index));
   }
 
- private:
   const float* records_;
   std::ptrdiff_t slice_;
-  float last_cell_[3], row_, layer_;
+  float last_cell_[3], row_, rows_, layer_;  // cells in a row, rows in a layer, cells in a layer
+};
+
+/// Where a vector of rays starts in a brick, and its steps.
+struct StridePlan {
+  Float at[3], step[3];  ///< lattice coordinates
+  Float steps, length;   ///< how many, and the world length of one
+
+  HWY_INLINE StridePlan(const MarchJob& job, int first) {
+    const MarchBrick& brick = *job.brick;
+    const MarchRays::Met& met = job.rays->met;
+    const Course course(*job.rays, first);
+    const Float enter = hn::LoadU(kFloat, met.z_enter + first);
+    const Float depth = hn::Sub(hn::LoadU(kFloat, met.z_leave + first), enter);
+    Float square = constant(0.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Float cells = constant(static_cast<float>(brick.cells[axis]) / (brick.upper[axis] - brick.lower[axis]));
+      const Float offset = hn::Sub(course.origin[axis], constant(brick.lower[axis]));
+      at[axis] = hn::Mul(multiply_add(course.direction[axis], enter, offset), cells);
+      step[axis] = hn::Mul(hn::Mul(course.direction[axis], depth), cells);
+      square = multiply_add(step[axis], step[axis], square);
+    }
+    const Float world = hn::Mul(depth, course.world_per_z);
+    const Float wanted = hn::Ceil(job.sample_distance > 0.0f ? hn::Mul(world, constant(1.0f / job.sample_distance))
+                                                             : hn::Mul(hn::Sqrt(square), constant(1.0f / job.stride)));
+    steps = hn::Min(hn::Max(wanted, constant(1.0f)), constant(1e5f));
+    const Float share = hn::Div(constant(1.0f), steps);
+    for (Float& along : step) along = hn::Mul(along, share);
+    length = hn::Mul(world, share);
+  }
 };
 
 /// Takes the rays through the brick in equal steps, the first sample where they enter, the last where they leave.
@@ -58,12 +129,7 @@ class LatticeSampler {
 template <class Integrator>
 class Strider {
  public:
-  explicit Strider(const MarchJob& job)
-      : job_(job), sampler_(*job.brick), integrator_(*job.tables), steps_per_cell_(constant(1.0f / job.stride)) {
-    const MarchBrick& brick = *job.brick;
-    for (int axis = 0; axis < 3; ++axis)
-      cells_per_unit_[axis] = constant(static_cast<float>(brick.cells[axis]) / (brick.upper[axis] - brick.lower[axis]));
-  }
+  explicit Strider(const MarchJob& job) : job_(job), sampler_(*job.brick), integrator_(*job.tables) {}
 
   std::uint64_t run(int count) {
     constexpr int kStep = static_cast<int>(kLanes);
@@ -91,24 +157,13 @@ class Strider {
   };
 
   HWY_INLINE void set_out(int first, int lanes, Travellers& rays) const {
-    const MarchRays::Met& met = job_.rays->met;
-    const Course course(*job_.rays, first);
-    const Float enter = hn::LoadU(kFloat, met.z_enter + first);
-    const Float depth = hn::Sub(hn::LoadU(kFloat, met.z_leave + first), enter);
-    Float square = constant(0.0f);
+    const StridePlan plan(job_, first);
     for (int axis = 0; axis < 3; ++axis) {
-      const Float offset = hn::Sub(course.origin[axis], constant(job_.brick->lower[axis]));
-      rays.at[axis] = hn::Mul(multiply_add(course.direction[axis], enter, offset), cells_per_unit_[axis]);
-      rays.step[axis] = hn::Mul(hn::Mul(course.direction[axis], depth), cells_per_unit_[axis]);
-      square = multiply_add(rays.step[axis], rays.step[axis], square);
+      rays.at[axis] = plan.at[axis];
+      rays.step[axis] = plan.step[axis];
     }
-    const Float world = hn::Mul(depth, course.world_per_z);
-    const Float wanted = hn::Ceil(job_.sample_distance > 0.0f ? hn::Mul(world, constant(1.0f / job_.sample_distance))
-                                                              : hn::Mul(hn::Sqrt(square), steps_per_cell_));
-    rays.steps = hn::Min(hn::Max(wanted, constant(1.0f)), constant(1e5f));
-    const Float share = hn::Div(constant(1.0f), rays.steps);
-    for (Float& along : rays.step) along = hn::Mul(along, share);
-    rays.length = hn::Mul(world, share);
+    rays.steps = plan.steps;
+    rays.length = plan.length;
     rays.scalar = sampler_.eval(rays.at);
     rays.front = integrator_.front_at(rays.scalar);
     rays.sum = load_accumulated(*job_.rays, first);
@@ -143,7 +198,6 @@ class Strider {
   const MarchJob& job_;
   LatticeSampler sampler_;
   Integrator integrator_;
-  Float steps_per_cell_, cells_per_unit_[3];
   std::uint64_t segments_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #define TETRAVOX_CPU_WALK_INL
 #endif
 
+#include "src/cpu/kernels/effects-inl.h"
 #include "src/cpu/kernels/kernels.h"
 #include "src/cpu/kernels/lanes-inl.h"
 #include "src/cpu/kernels/rasterize-inl.h"
@@ -15,12 +16,65 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
 
-template <class Integrator, bool kCellData>
+/// What a vector of rays passes in its tetrahedra (see effects-inl.h). Vertices a, b, c are those of the entry face, d
+/// the fourth; in the exit face d has taken the place of one of them.
+struct TetrahedronStretch {
+  static constexpr bool kIsLinear = true;
+
+  Float scalar_front, scalar_back, z_front, z_back, length;
+  const FrameMesh& mesh;
+  Uint cell, id[3], d;
+  Float front_weights[3], back_weights[3];
+  Mask is_replaced[3];
+
+  HWY_INLINE Float scalar(Float u) const { return multiply_add(u, hn::Sub(scalar_back, scalar_front), scalar_front); }
+
+  HWY_INLINE Triple gradient(Float u) const {
+    if (mesh.has_cell_gradients) {
+      const Record record = load_records(mesh.gradients, cell);
+      return {record.x, record.y, record.z};
+    }
+    Float weights[4];
+    find_weights(u, weights);
+    Triple sum{constant(0.0f), constant(0.0f), constant(0.0f)};
+    for (int k = 0; k < 4; ++k) {
+      const Record record = load_records(mesh.gradients, k < 3 ? id[k] : d);
+      sum = sum_of(sum, scaled({record.x, record.y, record.z}, weights[k]));
+    }
+    return sum;
+  }
+
+  HWY_INLINE Float other(int field, Float u) const {
+    const float* values = mesh.others[field];
+    if (mesh.is_cell_field[field]) return hn::GatherIndex(kFloat, values, hn::BitCast(kInt, cell));
+    Float weights[4];
+    find_weights(u, weights);
+    Float sum = constant(0.0f);
+    for (int k = 0; k < 4; ++k)
+      sum = multiply_add(weights[k], hn::GatherIndex(kFloat, values, hn::BitCast(kInt, k < 3 ? id[k] : d)), sum);
+    return sum;
+  }
+
+ private:
+  /// Barycentric coordinates of a place for a, b, c, d.
+  HWY_INLINE void find_weights(Float u, Float weights[4]) const {
+    const Float v = hn::Sub(constant(1.0f), u);
+    weights[3] = constant(0.0f);
+    for (int k = 0; k < 3; ++k) {
+      const Float back = hn::Mul(u, back_weights[k]);
+      weights[k] = multiply_add(v, front_weights[k], hn::IfThenZeroElse(is_replaced[k], back));
+      weights[3] = hn::Add(weights[3], hn::IfThenElseZero(is_replaced[k], back));
+    }
+  }
+};
+
+template <class Integrator, bool kCellData, bool kHasEffects = false>
 class Walker {
  public:
   explicit Walker(const WalkJob& job) : job_(job), mesh_(*job.mesh), integrator_(*job.tables) {}
@@ -50,6 +104,9 @@ class Walker {
     lanes_.red[lane] = lanes_.green[lane] = lanes_.blue[lane] = lanes_.transmittance[lane] = 0.0f;
     lanes_.x_offset[lane] = lanes_.x_slope[lane] = lanes_.y_offset[lane] = lanes_.y_slope[lane] = 0.0f;
     lanes_.world_per_z[lane] = 0.0f;
+    lanes_.z_near[lane] = lanes_.depth[lane] = 0.0f;
+    lanes_.z_far[lane] = kEndless;
+    lanes_.pixel[lane] = 0;
   }
 
   /// Gives every idle lane its ray's next entry, or the next ray. False when nothing is left to walk.
@@ -86,6 +143,18 @@ class Walker {
     lanes_.y_offset[lane] = grid.row_offset[ray.row];
     lanes_.y_slope[lane] = y_slope;
     lanes_.world_per_z[lane] = grid.world_per_local * std::sqrt(1.0f + x_slope * x_slope + y_slope * y_slope);
+    lanes_.z_near[lane] = grid.z_near;
+    lanes_.z_far[lane] = kEndless;
+    lanes_.next_clip[lane] = ray.clip_begin;
+    if (ray.clip_begin < ray.clip_end) next_interval(lane);
+    lanes_.depth[lane] = kEndless;
+    lanes_.pixel[lane] = ray.row * grid.width + ray.column;
+  }
+
+  void next_interval(std::size_t lane) const {
+    const ClipInterval& interval = job_.tile->clips[lanes_.next_clip[lane]++];
+    lanes_.z_near[lane] = interval.z_near;
+    lanes_.z_far[lane] = interval.z_far;
   }
 
   /// Puts the lane in front of the cell behind its next entry.
@@ -122,12 +191,16 @@ class Walker {
 
   void write_pixel(std::size_t lane) {
     const TileRays::Ray& ray = job_.tile->rays[lanes_.ray[lane]];
-    float* pixel = job_.pixels + 4 * (static_cast<std::size_t>(ray.row) * job_.rays->width + ray.column);
-    // Sums may round past 1 by an ulp.
-    pixel[0] = std::min(lanes_.red[lane], 1.0f);
-    pixel[1] = std::min(lanes_.green[lane], 1.0f);
-    pixel[2] = std::min(lanes_.blue[lane], 1.0f);
+    const std::size_t index = static_cast<std::size_t>(ray.row) * job_.rays->width + ray.column;
+    float* pixel = job_.pixels + 4 * index;
+    // Sums may round past 1 by an ulp; light may take them beyond.
+    const float most = kHasEffects ? kEndless : 1.0f;
+    pixel[0] = std::min(lanes_.red[lane], most);
+    pixel[1] = std::min(lanes_.green[lane], most);
+    pixel[2] = std::min(lanes_.blue[lane], most);
     pixel[3] = std::min(1.0f - lanes_.transmittance[lane], 1.0f);
+    if constexpr (kHasEffects)
+      if (job_.tables->effects->depth) job_.tables->effects->depth[index] = lanes_.depth[lane];
   }
 
   // ---- between memory and registers
@@ -227,6 +300,8 @@ class Walker {
     rank = hn::Add(rank, hn::IfThenElseZero(hn::Lt(d, replaced), hn::Set(kUint, 1)));
     const Uint neighbour = hn::GatherIndex(kUint, links, hn::BitCast(kInt, hn::Add(five_cells, rank)));
 
+    Entered entered;
+    if constexpr (kHasEffects) entered = note_entered(s);
     replace_vertex(s, out_a, out_b, out_c, d, x, y, vertex, product);
 
     // Depth and scalar where the ray leaves.
@@ -248,10 +323,42 @@ class Walker {
     }
     segment.length = hn::Mul(hn::Sub(z_back, s.z_front), hn::Load(kFloat, lanes_.world_per_z));
     segment.length = hn::IfThenElseZero(s.alive, segment.length);
-    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, hn::Lt(s.z_front, constant(job_.rays->z_near)))))
-      clip_near(s, z_back, segment);
 
-    integrator_.integrate(segment, s.front, s.sum);
+    // Of what is clipped away nothing is integrated.
+    const Mask clipped =
+        hn::Or(hn::Lt(s.z_front, hn::Load(kFloat, lanes_.z_near)), hn::Gt(z_back, hn::Load(kFloat, lanes_.z_far)));
+    const Float one = constant(1.0f), zero = constant(0.0f);
+    const bool is_cut = !hn::AllFalse(kFloat, clipped);
+    if constexpr (kHasEffects) {
+      const auto stretch_of = [&] {
+        return make_stretch(s, entered, d, {out_a, out_b, out_c}, hn::IfThenElseZero(valid, inverse), segment, z_back);
+      };
+      const auto integrate = [&](Float from, Float to, Float length_part) {
+        TetrahedronStretch part = stretch_of();
+        part.length = hn::IfThenElseZero(hn::Gt(length_part, zero), part.length);
+        integrate_part(s, part, from, to);
+      };
+      if (HWY_UNLIKELY(is_cut))
+        integrate_intervals(s, z_back, segment, integrate);
+      else if (HWY_LIKELY(integrator_.is_light_all(segment)))
+        integrator_.integrate_lit_segment(
+            segment, stretch_of, [&] { return view_rays(); }, s.front, s.sum);
+      else
+        integrate(zero, one, one);
+    } else {
+      const auto integrate = [&](Float from, Float to, Float length_part) {
+        const Float rise = hn::Sub(segment.scalar_back, segment.scalar_front);
+        const Float begin = multiply_add(from, rise, segment.scalar_front);
+        const Segments part{
+            begin, hn::IfThenElse(hn::Ge(to, one), segment.scalar_back, multiply_add(to, rise, segment.scalar_front)),
+            hn::Mul(segment.length, length_part)};
+        integrator_.integrate(part, s.front, s.sum);
+      };
+      if (HWY_UNLIKELY(is_cut))
+        integrate_intervals(s, z_back, segment, integrate);
+      else
+        integrator_.integrate(segment, s.front, s.sum);
+    }
     s.z_front = z_back;
     s.scalar_front = segment.scalar_back;
 
@@ -288,22 +395,108 @@ class Walker {
     }
   }
 
-  /// Cuts away what lies before the eye (or before the plane of an orthographic camera).
-  HWY_NOINLINE void clip_near(RayState& s, Float z_back, Segments& segment) const {
-    const Float z_near = constant(job_.rays->z_near);
-    const Mask before = hn::Lt(s.z_front, z_near);
+  /// Calls `integrate(from, to, part)` for each part of a segment that is drawn, and ends rays behind the last one.
+  template <class Integrate>
+  HWY_NOINLINE void integrate_intervals(RayState& s, Float z_back, const Segments& segment,
+                                        const Integrate& integrate) {
+    const Float zero = constant(0.0f), one = constant(1.0f);
     const Float depth = hn::Sub(z_back, s.z_front);
-    const Float t = hn::Min(
-        hn::Div(hn::Sub(z_near, s.z_front), hn::IfThenElse(hn::Gt(depth, constant(0.0f)), depth, constant(1.0f))),
-        constant(1.0f));
-    const Float scalar = multiply_add(t, hn::Sub(segment.scalar_back, segment.scalar_front), segment.scalar_front);
-    const Mask crosses = hn::And(before, hn::Gt(z_back, z_near));
-    segment.scalar_front = hn::IfThenElse(crosses, scalar, segment.scalar_front);
-    const Float visible =
-        hn::Mul(hn::Max(hn::Sub(z_back, z_near), constant(0.0f)), hn::Load(kFloat, lanes_.world_per_z));
-    segment.length = hn::IfThenElse(before, hn::IfThenElseZero(s.alive, visible), segment.length);
-    const auto clipped = integrator_.front_at(segment.scalar_front);
-    Integrator::replace_front(before, clipped, s.front);
+    const Float inverse = hn::Div(one, hn::IfThenElse(hn::Gt(depth, zero), depth, one));
+    for (;;) {
+      const Float near = hn::Load(kFloat, lanes_.z_near), far = hn::Load(kFloat, lanes_.z_far);
+      const Mask cuts_front = hn::Gt(near, s.z_front), cuts_back = hn::Lt(far, z_back);
+      const auto place_of = [&](Float z) {
+        return hn::Min(hn::Max(hn::Mul(hn::Sub(z, s.z_front), inverse), zero), one);
+      };
+      const Float from = hn::IfThenElse(cuts_front, place_of(near), zero);
+      const Float to = hn::Max(hn::IfThenElse(cuts_back, place_of(far), one), from);
+      const Float begin = multiply_add(from, hn::Sub(segment.scalar_back, segment.scalar_front), segment.scalar_front);
+      s.front = integrator_.front_at(begin);
+      integrate(from, to, hn::Sub(to, from));
+      if (!leave_intervals(s, hn::And(s.alive, cuts_back), z_back)) break;
+    }
+    s.front = integrator_.front_at(segment.scalar_back);
+  }
+
+  /// Moves the rays of `ended` on to their next interval; those without one are done. Whether any interval begins
+  /// before `z_back`.
+  HWY_NOINLINE bool leave_intervals(RayState& s, Mask ended, Float z_back) {
+    if (hn::AllFalse(kFloat, ended)) return false;
+    HWY_ALIGN float back[kLanes];
+    HWY_ALIGN std::uint32_t lane[kLanes], done[kLanes];
+    hn::Store(z_back, kFloat, back);
+    hn::Store(hn::IfThenElseZero(uint_mask(ended), hn::Set(kUint, 1)), kUint, lane);
+    bool is_any_near = false;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      done[i] = 0;
+      if (!lane[i] || lanes_.ray[i] == kNoRay) continue;
+      if (lanes_.next_clip[i] < job_.tile->rays[lanes_.ray[i]].clip_end) {
+        next_interval(i);
+        is_any_near |= lanes_.z_near[i] < back[i];
+      } else {
+        done[i] = 1;
+        lanes_.z_far[i] = kEndless;  // asks no more
+      }
+    }
+    const Mask finished = float_mask(hn::Ne(hn::Load(kUint, done), hn::Zero(kUint)));
+    s.alive = hn::AndNot(finished, s.alive);
+    forget_entries(finished);
+    return is_any_near;
+  }
+
+  // ---- effects ----
+
+  /// What is remembered of a face that rays enter through.
+  struct Entered {
+    Uint id[3];
+    Float weights[3];
+  };
+  static HWY_INLINE Entered note_entered(const RayState& s) {
+    const Float total = hn::Add(hn::Add(s.weight[0], s.weight[1]), s.weight[2]);
+    const Mask valid = hn::Gt(total, constant(0.0f));
+    const Float inverse = hn::Div(constant(1.0f), hn::IfThenElse(valid, total, constant(1.0f)));
+    Entered entered;
+    for (int k = 0; k < 3; ++k) {
+      entered.id[k] = s.id[k];
+      entered.weights[k] = hn::IfThenElse(valid, hn::Mul(s.weight[k], inverse), constant(1.0f / 3.0f));
+    }
+    return entered;
+  }
+
+  struct Replaced {
+    Mask a, b, c;
+  };
+  /// `inverse`: of the sum of the weights of the exit face, or 0 where that has none.
+  HWY_INLINE TetrahedronStretch make_stretch(const RayState& s, const Entered& entered, Uint d,
+                                             const Replaced& replaced, Float inverse, const Segments& segment,
+                                             Float z_back) const {
+    TetrahedronStretch stretch{segment.scalar_front,
+                               segment.scalar_back,
+                               s.z_front,
+                               z_back,
+                               segment.length,
+                               mesh_,
+                               s.cell,
+                               {entered.id[0], entered.id[1], entered.id[2]},
+                               d,
+                               {entered.weights[0], entered.weights[1], entered.weights[2]},
+                               {},
+                               {replaced.a, replaced.b, replaced.c}};
+    const Mask flat = hn::Eq(inverse, constant(0.0f));
+    for (int k = 0; k < 3; ++k)
+      stretch.back_weights[k] = hn::IfThenElse(flat, constant(1.0f / 3.0f), hn::Mul(s.weight[k], inverse));
+    return stretch;
+  }
+
+  HWY_INLINE RayView view_rays() const {
+    return {hn::Load(kFloat, lanes_.x_offset), hn::Load(kFloat, lanes_.x_slope), hn::Load(kFloat, lanes_.y_offset),
+            hn::Load(kFloat, lanes_.y_slope), lanes_.pixel};
+  }
+
+  HWY_INLINE void integrate_part(RayState& s, const TetrahedronStretch& stretch, Float from, Float to) {
+    Float depth = hn::Load(kFloat, lanes_.depth);
+    integrator_.integrate_stretch(stretch, view_rays(), from, to, s.front, s.sum, depth);
+    hn::Store(depth, kFloat, lanes_.depth);
   }
 
   /// Stops rays of which no 8-bit pixel can change any more.
@@ -342,6 +535,7 @@ class Walker {
   }
 
   static constexpr std::uint64_t kCheckedSteps = 1024;
+  static constexpr float kEndless = std::numeric_limits<float>::infinity();
 
   const WalkJob& job_;
   const FrameMesh& mesh_;

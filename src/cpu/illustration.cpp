@@ -1,0 +1,171 @@
+#include "src/cpu/illustration.h"
+
+#include "tetravox/error.h"
+#include "tetravox/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+namespace tetravox::cpu {
+namespace {
+
+/// A piece of a ray is worth a normal if its opacity exceeds this part of the tolerance.
+constexpr double kFaintOfTolerance = 1.0 / 200.0;
+
+LightSource make_light(const Light& light, const IllustratedFrame& frame) {
+  LightSource source;
+  for (int channel = 0; channel < 3; ++channel)
+    source.color[channel] = static_cast<float>(light.color[channel] * light.intensity);
+  Vector3 vector{};
+  if (light.kind == LightKind::kDirectional) {
+    source.kind = LightSource::Kind::kDirectional;
+    const double length = std::hypot(light.direction[0], light.direction[1], light.direction[2]);
+    for (int axis = 0; axis < 3; ++axis) vector[axis] = -light.direction[axis] / length;
+  } else if (light.kind == LightKind::kPoint) {
+    source.kind = LightSource::Kind::kPoint;
+    for (int axis = 0; axis < 3; ++axis)
+      vector[axis] = (light.position[axis] - frame.origin[axis]) / frame.world_per_local;
+  }
+  const Vector3 seen = to_camera(frame.camera, vector);
+  for (int axis = 0; axis < 3; ++axis) source.vector[axis] = static_cast<float>(seen[axis]);
+  return source;
+}
+
+SurfaceSheet make_sheet(const Isosurface& surface, const optics::ScalarMap& map) {
+  SurfaceSheet sheet;
+  sheet.value = map.stored_from_value(surface.value);
+  for (int channel = 0; channel < 3; ++channel) {
+    sheet.front_color[channel] = static_cast<float>(surface.front_color[channel]);
+    sheet.back_color[channel] = static_cast<float>(surface.back_color[channel]);
+  }
+  sheet.opacity = static_cast<float>(surface.opacity);
+  sheet.is_two_sided = surface.is_two_sided;
+  return sheet;
+}
+
+void fill_shading(const Lighting& lighting, const IllustratedFrame& frame, Illustration& illustration) {
+  for (const Light& light : lighting.lights) illustration.lights.push_back(make_light(light, frame));
+  Shading& shading = illustration.shading;
+  shading.lights = illustration.lights;
+  shading.ambient = static_cast<float>(lighting.material.ambient);
+  shading.diffuse = static_cast<float>(lighting.material.diffuse);
+  shading.specular = static_cast<float>(lighting.material.specular);
+  shading.shininess = static_cast<float>(lighting.material.shininess);
+  shading.is_two_sided = lighting.is_two_sided;
+  const double range = frame.scalar_range.max - frame.scalar_range.min;
+  const double magnitude = lighting.gradient_threshold * range / frame.diagonal;  // value a world length
+  const double stored = magnitude * frame.world_per_local / frame.scalar_map.scale;
+  shading.half_strength = static_cast<float>(stored * stored);
+}
+
+/// Everything that shadows depend on, as text.
+std::string shadow_key(const RenderSettings& settings, const std::optional<Camera>& eye, std::uint64_t function) {
+  Scene scene;
+  scene.settings = settings;
+  scene.settings.width = scene.settings.height = 1;
+  scene.camera = eye;
+  return format_scene(scene) + std::to_string(function);
+}
+
+}  // namespace
+
+void ShadowCache::prepare(const RenderSettings& settings, const ShadowedBody& body, const Camera& eye,
+                          std::uint64_t function, const DrawDepths& draw, const Progress& progress) {
+  const Lighting& lighting = settings.lighting;
+  if (lighting.shadows == ShadowKind::kVolume) {
+    const bool follows_eye = std::any_of(lighting.lights.begin(), lighting.lights.end(),
+                                         [](const Light& light) { return light.kind == LightKind::kHeadlight; });
+    const std::string key = shadow_key(settings, follows_eye ? std::optional(eye) : std::nullopt, function);
+    if (key != key_) {
+      key_.clear();
+      lights_ = find_light_depths(settings, body, eye, draw);
+      key_ = key;
+    }
+  }
+  if (lighting.ambient_occlusion > 0) {
+    RenderSettings of_openness = settings;
+    of_openness.lighting.lights.clear();
+    const std::string key = shadow_key(of_openness, std::nullopt, function);
+    if (key != openness_key_) {
+      openness_key_.clear();
+      openness_ = cpu::find_openness(settings, body, draw, progress);
+      openness_key_ = key;
+    }
+  }
+}
+
+void ShadowCache::attach(const RenderSettings& settings, const ShadowedBody& body, const CameraFrame& camera,
+                         Illustration& illustration) const {
+  Shading& shading = illustration.shading;
+  shading.shadow_bias = find_shadow_bias(settings, body);
+  if (settings.lighting.shadows == ShadowKind::kVolume) {
+    for (const std::vector<LightDepths>& light : lights_) {
+      std::vector<ShadowMap>& maps = illustration.shadows.emplace_back();
+      for (const LightDepths& depths : light) maps.push_back(make_shadow_map(depths, camera));
+    }
+    for (std::size_t i = 0; i < illustration.lights.size(); ++i)
+      illustration.lights[i].shadows = illustration.shadows[i];
+  }
+  if (settings.lighting.ambient_occlusion > 0) {
+    illustration.occlusion = make_occlusion_map(openness_, body, camera);
+    shading.occlusion = &illustration.occlusion;
+  }
+}
+
+Vector3 to_camera(const CameraFrame& camera, const Vector3& direction) {
+  Vector3 seen{};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < 3; ++i) seen[axis] += camera.axes[axis][i] * direction[i];
+  return seen;
+}
+
+bool wants_effects(const RenderSettings& settings) {
+  return settings.lighting.is_lit() || !settings.surfaces.empty() || settings.wants_depth ||
+         settings.opacity_weight != OpacityWeight::kNone;
+}
+
+bool wants_gradients(const RenderSettings& settings) {
+  return settings.lighting.is_lit() || settings.opacity_weight == OpacityWeight::kGradient;
+}
+
+void require_effects(const RenderSettings& settings, bool has_constant_cells) {
+  const auto fail = [](const std::string& message) { throw Error(ErrorCode::kUnsupported, message); };
+  if (settings.integrator == Integrator::kPre)
+    fail(
+        "pre-classification goes with clipping, but not with light, iso-surfaces, weights or depth: choose another "
+        "classification");
+  if (settings.samples_per_voxel > 0.0)
+    fail("light, iso-surfaces, weights and depth follow the cells, not a fixed rate: leave out the samples per voxel");
+  if (has_constant_cells && !settings.surfaces.empty())
+    fail("iso-surfaces need a field that is continuous: choose point data, or another filter than 'nearest'");
+}
+
+void illustrate(const RenderSettings& settings, const IllustratedFrame& frame, Illustration& illustration) {
+  Effects& effects = illustration.effects;
+  if (settings.lighting.is_lit()) {
+    fill_shading(settings.lighting, frame, illustration);
+    effects.shading = &illustration.shading;
+  }
+  for (const Isosurface& surface : settings.surfaces)
+    illustration.sheets.push_back(make_sheet(surface, frame.scalar_map));
+  std::stable_sort(illustration.sheets.begin(), illustration.sheets.end(),
+                   [](const SurfaceSheet& a, const SurfaceSheet& b) { return a.value < b.value; });
+  effects.surfaces = illustration.sheets;
+  for (std::size_t i = 0; i < 9; ++i)
+    effects.camera_from_gradient[i] = static_cast<float>(frame.camera_from_gradient[i]);
+  if (frame.centroids)
+    effects.centroid = {frame.centroids->first, frame.centroids->nodes_per_scalar, frame.centroids->last_node,
+                        frame.centroids->sums.data()};
+  const double range = std::max(frame.scalar_range.max - frame.scalar_range.min, 1e-300);
+  const double weight = settings.opacity_weight_scale * frame.scalar_map.scale * frame.diagonal / range;
+  if (settings.opacity_weight == OpacityWeight::kScalarDifference)
+    effects.weight_by_change = static_cast<float>(weight);
+  if (settings.opacity_weight == OpacityWeight::kGradient)
+    effects.weight_by_gradient = static_cast<float>(weight / frame.world_per_local);
+  if (effects.shading) effects.usual_light = 0.75f;
+  effects.faint = static_cast<float>(settings.tolerance * kFaintOfTolerance);
+}
+
+}  // namespace tetravox::cpu

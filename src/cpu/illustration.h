@@ -1,0 +1,77 @@
+#pragma once
+
+/// The effects of a frame: what RenderSettings ask for beside emission and absorption, as the kernels want it.
+
+#include "src/cpu/frame.h"
+#include "src/cpu/kernels/effects.h"
+#include "src/cpu/shadows.h"
+#include "src/optics/antiderivative_table.h"
+#include "src/optics/centroid_table.h"
+#include "tetravox/render.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tetravox::cpu {
+
+/// Data and camera of a frame.
+struct IllustratedFrame {
+  CameraFrame camera;
+  Vector3 origin{};  ///< world position of the local origin
+  double world_per_local = 1.0;
+  optics::ScalarMap scalar_map;
+  ValueRange scalar_range;  ///< values
+  double diagonal = 1.0;    ///< of the bounds, world length
+  /// Row major: gradients as the source holds them -> camera frame, stored scalars a local length.
+  std::array<double, 9> camera_from_gradient{};
+  const optics::CentroidTable* centroids = nullptr;
+};
+
+/// Owns what `effects` points at: not to be moved.
+struct Illustration {
+  Illustration() = default;
+  Illustration(const Illustration&) = delete;
+  Illustration& operator=(const Illustration&) = delete;
+
+  std::vector<LightSource> lights;
+  std::vector<std::vector<ShadowMap>> shadows;  ///< of each light
+  OcclusionMap occlusion;
+  std::vector<SurfaceSheet> sheets;
+  Shading shading;
+  Effects effects;
+};
+
+/// Whether anything but the clipping goes beyond emission and absorption.
+bool wants_effects(const RenderSettings& settings);
+
+/// Whether these need gradients.
+bool wants_gradients(const RenderSettings& settings);
+
+/// @throws Error (kUnsupported) for settings that do not go together.
+void require_effects(const RenderSettings& settings, bool has_constant_cells);
+
+/// Fills all but shadows, occlusion, environment, domain, depth and record.
+void illustrate(const RenderSettings& settings, const IllustratedFrame& frame, Illustration& illustration);
+
+/// What lights see, from frame to frame as long as nothing changes.
+class ShadowCache {
+ public:
+  /// Draws what is missing for these settings. `function`: changes with the transfer function.
+  void prepare(const RenderSettings& settings, const ShadowedBody& body, const Camera& eye, std::uint64_t function,
+               const DrawDepths& draw, const Progress& progress);
+  /// Hands it to a frame. Valid as long as this.
+  void attach(const RenderSettings& settings, const ShadowedBody& body, const CameraFrame& camera,
+              Illustration& illustration) const;
+
+ private:
+  std::string key_, openness_key_;
+  std::vector<std::vector<LightDepths>> lights_;
+  Openness openness_;
+};
+
+/// A world direction in the camera frame.
+Vector3 to_camera(const CameraFrame& camera, const Vector3& direction);
+
+}  // namespace tetravox::cpu

@@ -1,0 +1,480 @@
+// What is drawn beside emission and absorption: light, iso-surfaces, weights, depths; the same for every source and
+// every integrator.
+//
+// A source hands over stretches: what a vector of rays passes in its cells, u from 0 at the front to 1 at the back.
+// A stretch offers
+//   Float scalar_front, scalar_back, z_front, z_back, length   length in world units, 0 where a ray takes no part
+//   Float scalar(Float u)                                      strictly inside
+//   static constexpr bool kIsLinear; and where it is not: void find_extrema(Float extrema[2]); Float bend(),
+//   slope(Float u) Float count_pieces(from, to, transmittance)                linear pieces that the tolerance asks for
+//   Triple gradient(Float u); Float other(int field, Float u)
+
+#if defined(TETRAVOX_CPU_EFFECTS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETRAVOX_CPU_EFFECTS_INL
+#undef TETRAVOX_CPU_EFFECTS_INL
+#else
+#define TETRAVOX_CPU_EFFECTS_INL
+#endif
+
+#include "src/cpu/kernels/effects.h"
+#include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/segments-inl.h"
+#include "src/cpu/kernels/shading-inl.h"
+#include "src/cpu/kernels/vector_math-inl.h"
+
+#include <cmath>
+#include <limits>
+
+HWY_BEFORE_NAMESPACE();
+namespace tetravox::cpu {
+namespace HWY_NAMESPACE {
+
+/// A vector of rays in the camera frame (see RayGrid), and the pixels they belong to.
+struct RayView {
+  Float x_offset, x_slope, y_offset, y_slope;
+  const std::int32_t* pixels = nullptr;  ///< [kLanes] row * width + column
+
+  HWY_INLINE Triple position(Float z) const {
+    return {multiply_add(x_slope, z, x_offset), multiply_add(y_slope, z, y_offset), z};
+  }
+  HWY_INLINE Triple direction() const { return {x_slope, y_slope, constant(1.0f)}; }
+  HWY_INLINE Triple to_eye() const {
+    const Float minus = constant(-1.0f);
+    return normalized({hn::Mul(x_slope, minus), hn::Mul(y_slope, minus), minus});
+  }
+};
+
+/// A place on a stretch.
+struct Cut {
+  Float u, scalar;
+};
+
+template <class Stretch>
+HWY_INLINE Cut cut_at(const Stretch& stretch, Float u) {
+  const Float inside = stretch.scalar(u);
+  const Float after = hn::IfThenElse(hn::Ge(u, constant(1.0f)), stretch.scalar_back, inside);
+  return {u, hn::IfThenElse(hn::Le(u, constant(0.0f)), stretch.scalar_front, after)};
+}
+
+template <class Stretch>
+HWY_INLINE Float depth_at(const Stretch& stretch, Float u) {
+  return multiply_add(u, hn::Sub(stretch.z_back, stretch.z_front), stretch.z_front);
+}
+
+/// Writes down optical depths at the slices between two depths.
+HWY_NOINLINE inline void record_depths(const DepthRecord& record, const std::int32_t* pixels, const Float z[2],
+                                       const Float transmittance[2]) {
+  HWY_ALIGN float places[2][kLanes], depths[2][kLanes];
+  for (int end = 0; end < 2; ++end) {
+    const Float slice = hn::Mul(hn::Sub(z[end], constant(record.z_first)), constant(record.slices_per_z));
+    hn::Store(slice, kFloat, places[end]);
+    const Float log = log2_positive(hn::Max(transmittance[end], constant(1e-30f)));
+    hn::Store(hn::Mul(log, constant(-0.69314718f)), kFloat, depths[end]);
+  }
+  const std::size_t slice_size = static_cast<std::size_t>(record.width) * record.height;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const float begin = places[0][i], end = std::fmin(places[1][i], static_cast<float>(record.slices - 1));
+    if (!(end > begin)) continue;
+    for (float slice = std::fmax(std::floor(begin) + 1.0f, 0.0f); slice <= end; slice += 1.0f) {
+      const float t = (slice - begin) / (places[1][i] - begin);
+      record.depths[static_cast<std::size_t>(slice) * slice_size + static_cast<std::size_t>(pixels[i])] =
+          depths[0][i] + t * (depths[1][i] - depths[0][i]);
+    }
+  }
+}
+
+/// Wraps an integrator: cuts stretches at surfaces, lights what it returns, weighs extinction.
+template <class Base>
+class EffectIntegrator {
+ public:
+  using Front = typename Base::Front;
+
+  explicit EffectIntegrator(const IntegratorTables& tables)
+      : base_(tables),
+        effects_(*tables.effects),
+        is_light_all_(effects_.shading && !is_weighted() && !effects_.depth && !effects_.record && !effects_.domain),
+        is_lit_from_eye_(effects_.shading && is_lit_from_eye(*effects_.shading)) {}
+
+  HWY_INLINE Front front_at(Float scalar) const { return base_.front_at(scalar); }
+  static HWY_INLINE void replace_front(Mask mask, const Front& from, Front& to) { Base::replace_front(mask, from, to); }
+
+  /// Whether linear stretches without surfaces need light, and nothing else: then `integrate_lit_segment` serves.
+  HWY_INLINE bool is_light_all(const Segments& segment) const {
+    return is_light_all_ && (HWY_LIKELY(effects_.surfaces.empty()) || !meets_surface(segment));
+  }
+
+  /// A whole linear stretch, which `make_walk` makes only where it needs light.
+  template <class MakeStretch, class MakeRay>
+  HWY_INLINE void integrate_lit_segment(const Segments& segment, const MakeStretch& make_stretch,
+                                        const MakeRay& make_ray, Front& front, Accumulated& sum) const {
+    if constexpr (!Base::kTakesPlaces) {
+      const Float zero = constant(0.0f);
+      Accumulated part{zero, zero, zero, sum.transmittance};
+      base_.integrate(segment, front, part);
+      const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
+      const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
+      if (hn::AllFalse(kFloat, bright)) {
+        add_usual(part, sum);
+        return;
+      }
+      const auto stretch = make_stretch();
+      add_lit(stretch, make_ray(), find_centroid(segment), bright, part, sum);
+    }
+  }
+
+  /// The part of a stretch from `from` to `to`. `front`: at `from`; becomes that at `to`. `depth`: see
+  /// `Effects::depth`.
+  template <class Stretch>
+  HWY_NOINLINE void integrate_stretch(const Stretch& stretch, const RayView& ray, Float from, Float to, Front& front,
+                                      Accumulated& sum, Float& depth) const {
+    const Cut begin = cut_at(stretch, from), end = cut_at(stretch, to);
+    const Walk<Stretch> walk{stretch, ray, front, sum, depth};
+    if (HWY_UNLIKELY(meets_surface(stretch, begin, end)))
+      pass_surfaces(walk, begin, end);
+    else
+      integrate_volume(walk, begin, end);
+  }
+
+ private:
+  /// What one call works on.
+  template <class Stretch>
+  struct Walk {
+    const Stretch& stretch;
+    const RayView& ray;
+    Front& front;
+    Accumulated& sum;
+    Float& depth;
+  };
+
+  // ---- surfaces ----
+
+  /// Whether a surface is met on a linear segment.
+  HWY_INLINE bool meets_surface(const Segments& segment) const {
+    Mask met = hn::FirstN(kFloat, 0);
+    for (const SurfaceSheet& sheet : effects_.surfaces) {
+      const Float value = constant(sheet.value);
+      met = hn::Or(met, hn::Xor(hn::Lt(segment.scalar_front, value), hn::Lt(segment.scalar_back, value)));
+    }
+    return !hn::AllFalse(kFloat, hn::And(met, hn::Gt(segment.length, constant(0.0f))));
+  }
+
+  /// Whether a surface may be met anywhere between two cuts.
+  template <class Stretch>
+  HWY_INLINE bool meets_surface(const Stretch& stretch, const Cut& begin, const Cut& end) const {
+    if (effects_.surfaces.empty()) return false;
+    Float low = hn::Min(begin.scalar, end.scalar), high = hn::Max(begin.scalar, end.scalar);
+    if constexpr (!Stretch::kIsLinear) {
+      const Float bend = hn::Mul(constant(1.5f), stretch.bend());
+      low = hn::Sub(low, bend);
+      high = hn::Add(high, bend);
+    }
+    const Mask lanes = hn::Gt(stretch.length, constant(0.0f));
+    Mask met = hn::FirstN(kFloat, 0);
+    for (const SurfaceSheet& sheet : effects_.surfaces) {
+      const Float value = constant(sheet.value);
+      met = hn::Or(met, hn::And(hn::Le(low, value), hn::Ge(high, value)));
+    }
+    return !hn::AllFalse(kFloat, hn::And(met, lanes));
+  }
+
+  /// Draws what lies between two cuts, surfaces and volume in turns. Between its extrema the scalar is monotone, so
+  /// that a ray meets surfaces in the order of their values.
+  template <class Stretch>
+  HWY_NOINLINE void pass_surfaces(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
+    const Stretch& stretch = walk.stretch;
+    constexpr int kParts = Stretch::kIsLinear ? 1 : 3;
+    Cut borders[kParts + 1];
+    borders[0] = begin;
+    borders[kParts] = end;
+    if constexpr (!Stretch::kIsLinear) {
+      Float extrema[2];
+      stretch.find_extrema(extrema);
+      for (int i = 0; i < 2; ++i) borders[i + 1] = cut_at(stretch, hn::Min(hn::Max(extrema[i], begin.u), end.u));
+      // A cut at an end is that end, to the bit: both sides of a face must agree on what is met.
+      for (int i = 1; i < kParts; ++i) {
+        const Mask is_begin = hn::Le(borders[i].u, begin.u), is_end = hn::Ge(borders[i].u, end.u);
+        borders[i].scalar =
+            hn::IfThenElse(is_begin, begin.scalar, hn::IfThenElse(is_end, end.scalar, borders[i].scalar));
+      }
+    }
+    Cut at = begin;
+    const std::size_t count = effects_.surfaces.size();
+    for (int part = 0; part < kParts; ++part) {
+      const Cut &a = borders[part], &b = borders[part + 1];
+      const Mask rising = hn::Ge(b.scalar, a.scalar);
+      for (std::size_t i = 0; i < count; ++i) {
+        const SurfaceSheet &up = effects_.surfaces[i], &down = effects_.surfaces[count - 1 - i];
+        const Float value = hn::IfThenElse(rising, constant(up.value), constant(down.value));
+        const Mask before = hn::Lt(a.scalar, value), after = hn::Lt(b.scalar, value);
+        const Mask met = hn::And(hn::Xor(before, after), hn::Gt(stretch.length, constant(0.0f)));
+        if (hn::AllFalse(kFloat, met)) continue;
+        const Float u = hn::Max(find_crossing(stretch, a, b, value), at.u);
+        const Cut here{hn::IfThenElse(met, u, at.u), hn::IfThenElse(met, value, at.scalar)};
+        integrate_volume(walk, at, here);
+        composite_surface(walk, here, met, rising, up, down);
+        at = here;
+      }
+    }
+    integrate_volume(walk, at, end);
+  }
+
+  /// Where a stretch that is monotone between `a` and `b` takes `value`, as exactly as float can tell.
+  template <class Stretch>
+  HWY_INLINE Float find_crossing(const Stretch& stretch, const Cut& a, const Cut& b, Float value) const {
+    const Float rise = hn::Sub(b.scalar, a.scalar);
+    const Mask level = hn::Eq(rise, constant(0.0f));
+    const Float t = hn::Div(hn::Sub(value, a.scalar), hn::IfThenElse(level, constant(1.0f), rise));
+    const Float chord = multiply_add(hn::Min(hn::Max(t, constant(0.0f)), constant(1.0f)), hn::Sub(b.u, a.u), a.u);
+    if constexpr (Stretch::kIsLinear) {
+      return chord;
+    } else {
+      // Newton's method, in a bracket that shrinks: a step that leaves it becomes a bisection.
+      constexpr int kSteps = 8;
+      const Mask rising = hn::Gt(rise, constant(0.0f));
+      Float low = a.u, high = b.u, at = chord;
+      for (int i = 0; i < kSteps; ++i) {
+        const Float error = hn::Sub(stretch.scalar(at), value);
+        const Mask is_beyond = hn::Xor(hn::Lt(error, constant(0.0f)), rising);
+        high = hn::IfThenElse(is_beyond, at, high);
+        low = hn::IfThenElse(is_beyond, low, at);
+        const Float slope = stretch.slope(at);
+        const Mask flat = hn::Eq(slope, constant(0.0f));
+        const Float next = hn::Sub(at, hn::Div(error, hn::IfThenElse(flat, constant(1.0f), slope)));
+        const Mask inside = hn::AndNot(flat, hn::And(hn::Ge(next, low), hn::Le(next, high)));
+        at = hn::IfThenElse(inside, next, hn::Mul(constant(0.5f), hn::Add(low, high)));
+      }
+      return at;
+    }
+  }
+
+  /// Lays a sheet over what has been gathered, on the lanes of `met`: `up` where the scalar rises along the ray, `down`
+  /// where it falls.
+  template <class Stretch>
+  HWY_INLINE void composite_surface(const Walk<Stretch>& walk, const Cut& here, Mask met, Mask rising,
+                                    const SurfaceSheet& up, const SurfaceSheet& down) const {
+    const auto opacity_of = [](const SurfaceSheet& sheet, bool is_front) {
+      return constant(is_front || sheet.is_two_sided ? sheet.opacity : 0.0f);
+    };
+    const Float opacity = hn::IfThenElse(rising, opacity_of(up, true), opacity_of(down, false));
+    const auto channel = [&](int i) {
+      return hn::IfThenElse(rising, constant(up.front_color[i]), constant(down.back_color[i]));
+    };
+    Triple color{channel(0), channel(1), channel(2)};
+    const Mask seen = hn::And(met, hn::Gt(opacity, constant(0.0f)));
+    Accumulated& sum = walk.sum;
+    if (effects_.shading) {
+      const Illumination light = light_at(walk, here.u, hn::And(seen, hn::Gt(sum.transmittance, constant(0.0f))), true);
+      color = {multiply_add(color.x, light.diffuse.x, light.specular.x),
+               multiply_add(color.y, light.diffuse.y, light.specular.y),
+               multiply_add(color.z, light.diffuse.z, light.specular.z)};
+    }
+    const Float covered = hn::IfThenElseZero(seen, hn::Mul(sum.transmittance, opacity));
+    sum.red = multiply_add(covered, color.x, sum.red);
+    sum.green = multiply_add(covered, color.y, sum.green);
+    sum.blue = multiply_add(covered, color.z, sum.blue);
+    sum.transmittance = hn::Sub(sum.transmittance, covered);
+    const Mask first = hn::And(seen, hn::Eq(walk.depth, constant(std::numeric_limits<float>::infinity())));
+    walk.depth = hn::IfThenElse(first, depth_at(walk.stretch, here.u), walk.depth);
+  }
+
+  // ---- volume ----
+
+  template <class Stretch>
+  HWY_INLINE void integrate_volume(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
+    if (effects_.shading)
+      integrate_lit(walk, begin, end);
+    else
+      integrate_pieces(walk, begin, end, walk.sum, nullptr);
+  }
+
+  /// Adds linear pieces to `sum`. `moment`: becomes what they absorb times where that is, if it is asked for.
+  template <class Stretch>
+  HWY_NOINLINE void integrate_pieces(const Walk<Stretch>& walk, const Cut& begin, const Cut& end, Accumulated& sum,
+                                     Float* moment) const {
+    if constexpr (Stretch::kIsLinear) {
+      integrate_piece(walk, begin, end, true, sum, moment);
+    } else {
+      const Float pieces = walk.stretch.count_pieces(begin, end, sum.transmittance);
+      const Float share = hn::Div(hn::Sub(end.u, begin.u), pieces);
+      const bool is_whole = hn::AllTrue(kFloat, hn::Le(pieces, constant(1.0f)));
+      Cut at = begin;
+      for (Float number = constant(1.0f);; number = hn::Add(number, constant(1.0f))) {
+        const Mask last = hn::Ge(number, pieces);
+        Cut next = end;
+        if (!hn::AllTrue(kFloat, last)) {
+          next = cut_at(walk.stretch, multiply_add(number, share, begin.u));
+          next = {hn::IfThenElse(last, end.u, next.u), hn::IfThenElse(last, end.scalar, next.scalar)};
+        }
+        integrate_piece(walk, at, next, is_whole, sum, moment);
+        if (hn::AllTrue(kFloat, last)) return;
+        at = next;
+      }
+    }
+  }
+
+  /// One linear piece. Where its emission lies is looked up for a `is_whole` part, which it is the only piece of.
+  template <class Stretch>
+  HWY_INLINE void integrate_piece(const Walk<Stretch>& walk, const Cut& a, const Cut& b, bool is_whole,
+                                  Accumulated& sum, Float* moment) const {
+    const Stretch& stretch = walk.stretch;
+    const Float before = sum.transmittance;
+    const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
+    Segments segment{a.scalar, b.scalar, hn::Mul(stretch.length, part)};
+    if (HWY_UNLIKELY(is_weighted())) weigh(stretch, a, b, segment);
+    base_integrate(stretch, a, b, segment, walk.front, sum);
+    if (moment) {
+      const Float absorbed = hn::Sub(before, sum.transmittance);
+      const bool wants_place = is_whole && !hn::AllFalse(kFloat, hn::Gt(absorbed, constant(effects_.faint)));
+      const Float place = wants_place ? find_centroid(segment) : constant(0.5f);
+      *moment = multiply_add(absorbed, multiply_add(place, part, a.u), *moment);
+    }
+    if (effects_.depth) note_depth(walk, a, b, before, sum.transmittance);
+    if (HWY_UNLIKELY(effects_.record != nullptr)) {
+      const Float z[2] = {depth_at(stretch, a.u), depth_at(stretch, b.u)};
+      const Float ends[2] = {before, sum.transmittance};
+      record_depths(*effects_.record, walk.ray.pixels, z, ends);
+    }
+  }
+
+  template <class Stretch>
+  HWY_INLINE void base_integrate(const Stretch& stretch, const Cut& a, const Cut& b, const Segments& segment,
+                                 Front& front, Accumulated& sum) const {
+    if constexpr (Base::kTakesPlaces)
+      base_.integrate_between(stretch, a, b, segment.length, sum);
+    else
+      base_.integrate(segment, front, sum);
+  }
+
+  HWY_INLINE bool is_weighted() const { return effects_.weight_by_change > 0.0f || effects_.weight_by_gradient > 0.0f; }
+
+  /// Extinction falls with what changes little: a shorter segment has the same effect.
+  template <class Stretch>
+  HWY_NOINLINE void weigh(const Stretch& stretch, const Cut& a, const Cut& b, Segments& segment) const {
+    const Float one = constant(1.0f);
+    Float weight = one;
+    if (effects_.weight_by_change > 0.0f) {
+      const Float change = hn::Abs(hn::Sub(b.scalar, a.scalar));
+      const Float rate = hn::Div(change, hn::Max(segment.length, constant(1e-30f)));
+      weight = hn::Min(one, hn::Mul(rate, constant(effects_.weight_by_change)));
+    }
+    if (effects_.weight_by_gradient > 0.0f)
+      weight = hn::Mul(
+          weight, hn::Min(one, hn::Mul(magnitude_at(stretch, middle_of(a, b)), constant(effects_.weight_by_gradient))));
+    segment.length = hn::Mul(segment.length, weight);
+  }
+
+  HWY_INLINE static Float middle_of(const Cut& a, const Cut& b) { return hn::Mul(constant(0.5f), hn::Add(a.u, b.u)); }
+
+  template <class Stretch>
+  HWY_INLINE Triple gradient_at(const Stretch& stretch, Float u) const {
+    return transform(effects_.camera_from_gradient, 3, stretch.gradient(u));
+  }
+
+  template <class Stretch>
+  HWY_INLINE Float magnitude_at(const Stretch& stretch, Float u) const {
+    const Triple gradient = gradient_at(stretch, u);
+    return hn::Sqrt(dot(gradient, gradient));
+  }
+
+  /// Where opacity passes one half.
+  template <class Stretch>
+  HWY_INLINE void note_depth(const Walk<Stretch>& walk, const Cut& a, const Cut& b, Float before, Float after) const {
+    const Float half = constant(0.5f);
+    const Mask open = hn::Eq(walk.depth, constant(std::numeric_limits<float>::infinity()));
+    const Mask passes = hn::And(open, hn::And(hn::Ge(before, half), hn::Lt(after, half)));
+    if (HWY_LIKELY(hn::AllFalse(kFloat, passes))) return;
+    const auto log = [](Float x) { return log2_positive(hn::Max(x, constant(1e-30f))); };
+    const Float span = hn::Max(hn::Sub(log(before), log(after)), constant(1e-12f));
+    const Float t = hn::Min(hn::Div(hn::Add(log(before), constant(1.0f)), span), constant(1.0f));
+    const Float u = multiply_add(t, hn::Sub(b.u, a.u), a.u);
+    walk.depth = hn::IfThenElse(passes, depth_at(walk.stretch, u), walk.depth);
+  }
+
+  // ---- light ----
+
+  template <class Stretch>
+  HWY_INLINE Illumination light_at(const Walk<Stretch>& walk, Float u, Mask lanes, bool is_surface) const {
+    const ShadedPlace place{walk.ray.position(depth_at(walk.stretch, u)), gradient_at(walk.stretch, u),
+                            walk.ray.to_eye(), lanes, is_surface};
+    return illuminate(*effects_.shading, place);
+  }
+
+  /// Adds the volume between two cuts, in the light that falls where its emission is.
+  template <class Stretch>
+  HWY_NOINLINE void integrate_lit(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
+    Accumulated& sum = walk.sum;
+    const Float zero = constant(0.0f);
+    Accumulated part{zero, zero, zero, sum.transmittance};
+    Float moment = zero;
+    integrate_pieces(walk, begin, end, part, &moment);
+    const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
+    const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
+    if (hn::AllFalse(kFloat, bright)) {
+      add_usual(part, sum);
+      return;
+    }
+    const Float u = hn::Div(moment, hn::Max(absorbed, constant(1e-30f)));
+    add_lit(walk.stretch, walk.ray, hn::Min(hn::Max(u, begin.u), end.u), bright, part, sum);
+  }
+
+  /// Adds what is too faint for a normal.
+  HWY_INLINE void add_usual(const Accumulated& part, Accumulated& sum) const {
+    const Float usual = constant(effects_.usual_light);
+    sum.red = multiply_add(part.red, usual, sum.red);
+    sum.green = multiply_add(part.green, usual, sum.green);
+    sum.blue = multiply_add(part.blue, usual, sum.blue);
+    sum.transmittance = part.transmittance;
+  }
+
+  /// Adds a part of a stretch in the light at `u`, where that is `bright`.
+  template <class Stretch>
+  HWY_NOINLINE void add_lit(const Stretch& stretch, const RayView& ray, Float u, Mask bright, const Accumulated& part,
+                            Accumulated& sum) const {
+    const Float absorbed = hn::Sub(sum.transmittance, part.transmittance), usual = constant(effects_.usual_light);
+    const Triple gradient = gradient_at(stretch, u);
+    const Illumination light =
+        is_lit_from_eye_ ? illuminate_from_eye(*effects_.shading, gradient, ray.direction())
+                         : illuminate(*effects_.shading,
+                                      {ray.position(depth_at(stretch, u)), gradient, ray.to_eye(), bright, false});
+    const auto lit = [&](Float color, Float diffuse, Float specular) {
+      return hn::IfThenElse(bright, multiply_add(absorbed, specular, hn::Mul(color, diffuse)), hn::Mul(color, usual));
+    };
+    sum.red = hn::Add(sum.red, lit(part.red, light.diffuse.x, light.specular.x));
+    sum.green = hn::Add(sum.green, lit(part.green, light.diffuse.y, light.specular.y));
+    sum.blue = hn::Add(sum.blue, lit(part.blue, light.diffuse.z, light.specular.z));
+    sum.transmittance = part.transmittance;
+  }
+
+  /// Where in a segment, from 0 to 1, its extinction has its centre.
+  HWY_INLINE Float find_centroid(const Segments& segment) const {
+    const CentroidView& table = effects_.centroid;
+    const Float half = constant(0.5f), one = constant(1.0f), zero = constant(0.0f);
+    if (table.last_node == 0) return half;
+    const auto node_of = [&](Float scalar) {
+      const Float at = hn::Mul(hn::Sub(scalar, constant(table.first)), constant(table.nodes_per_scalar));
+      return hn::NearestInt(hn::Min(hn::Max(at, zero), constant(static_cast<float>(table.last_node))));
+    };
+    const Int front = node_of(segment.scalar_front), back = node_of(segment.scalar_back);
+    const Record before = load_table_records(table.sums, hn::BitCast(kUint, front));
+    const Record after = load_table_records(table.sums, hn::BitCast(kUint, back));
+    const auto difference = [](Float a, Float b) {
+      return hn::ConvertTo(kFloat, hn::Sub(hn::BitCast(kInt, b), hn::BitCast(kInt, a)));
+    };
+    const Float total = difference(before.x, after.x), nodes = hn::ConvertTo(kFloat, hn::Sub(back, front));
+    const Mask empty = hn::Or(hn::Eq(total, zero), hn::Eq(nodes, zero));
+    const Float moment = hn::Mul(difference(before.y, after.y), constant(static_cast<float>(table.last_node)));
+    const Float center = hn::Div(moment, hn::IfThenElse(empty, one, total));
+    const Float t = hn::Div(hn::Sub(center, hn::ConvertTo(kFloat, front)), hn::IfThenElse(empty, one, nodes));
+    return hn::IfThenElse(empty, half, hn::Min(hn::Max(t, zero), one));
+  }
+
+  Base base_;
+  const Effects& effects_;
+  bool is_light_all_, is_lit_from_eye_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetravox::cpu
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,255 @@
+// Light at places that rays pass: Blinn-Phong (Blinn 1977) as in Engel and Ertl 2002, shadows, occlusion, environments.
+
+#if defined(TETRAVOX_CPU_SHADING_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETRAVOX_CPU_SHADING_INL
+#undef TETRAVOX_CPU_SHADING_INL
+#else
+#define TETRAVOX_CPU_SHADING_INL
+#endif
+
+#include "src/cpu/kernels/effects.h"
+#include "src/cpu/kernels/vector_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetravox::cpu {
+namespace HWY_NAMESPACE {
+
+/// Three components of a vector of rays, one each.
+struct Triple {
+  Float x, y, z;
+};
+
+HWY_INLINE Float dot(const Triple& a, const Triple& b) {
+  return multiply_add(a.z, b.z, multiply_add(a.y, b.y, hn::Mul(a.x, b.x)));
+}
+HWY_INLINE Triple scaled(const Triple& a, Float by) { return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)}; }
+HWY_INLINE Triple sum_of(const Triple& a, const Triple& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Triple constant_triple(const float v[3]) { return {constant(v[0]), constant(v[1]), constant(v[2])}; }
+HWY_INLINE Triple normalized(const Triple& a) {
+  return scaled(a, hn::Div(constant(1.0f), hn::Sqrt(hn::Max(dot(a, a), constant(1e-30f)))));
+}
+/// Rows of a matrix with `columns` columns (3, or 4 for an affine map) times a vector.
+HWY_INLINE Triple transform(const float* m, int columns, const Triple& a) {
+  const auto row = [&](int i) {
+    const float* r = m + columns * i;
+    const Float sum =
+        multiply_add(constant(r[2]), a.z, multiply_add(constant(r[1]), a.y, hn::Mul(constant(r[0]), a.x)));
+    return columns == 4 ? hn::Add(sum, constant(r[3])) : sum;
+  };
+  return {row(0), row(1), row(2)};
+}
+HWY_INLINE Triple mix(Float t, const Triple& a, const Triple& b) {
+  return {multiply_add(t, hn::Sub(b.x, a.x), a.x), multiply_add(t, hn::Sub(b.y, a.y), a.y),
+          multiply_add(t, hn::Sub(b.z, a.z), a.z)};
+}
+
+/// log2(x) for normal x > 0, to 3e-7: exponent, and the series of atanh for a mantissa in [sqrt(1/2), sqrt(2)).
+HWY_INLINE Float log2_positive(Float x) {
+  const Int bits = hn::BitCast(kInt, x);
+  const Int shifted = hn::Sub(bits, hn::Set(kInt, 0x3F3504F3));
+  const Int exponent = hn::ShiftRight<23>(shifted);
+  const Float mantissa = hn::BitCast(kFloat, hn::Sub(bits, hn::ShiftLeft<23>(exponent)));
+  const Float one = constant(1.0f);
+  const Float t = hn::Div(hn::Sub(mantissa, one), hn::Add(mantissa, one)), square = hn::Mul(t, t);
+  Float sum = constant(1.0f / 9.0f);
+  for (const float coefficient : {1.0f / 7.0f, 1.0f / 5.0f, 1.0f / 3.0f, 1.0f})
+    sum = multiply_add(sum, square, constant(coefficient));
+  return multiply_add(hn::Mul(t, sum), constant(2.88539008f), hn::ConvertTo(kFloat, exponent));
+}
+
+/// x^exponent for x in [0, 1], exponent >= 1.
+HWY_INLINE Float power(Float x, float exponent) {
+  const Float log = log2_positive(hn::Max(x, constant(1e-20f)));
+  return exp_negative(hn::Mul(hn::Min(log, constant(0.0f)), constant(-0.69314718f * exponent)));
+}
+
+/// Where a vector of places lies in a lattice, clamped to it.
+struct LatticePlace {
+  Int node;     ///< number of the lower corner
+  Int step[3];  ///< from corner to corner; 0 along an axis with one point
+  Float t[3];   ///< place between the corners
+
+  HWY_INLINE LatticePlace(const std::int32_t sizes[3], const Triple& place) {
+    const Float at[3] = {place.x, place.y, place.z};
+    node = hn::Zero(kInt);
+    std::int32_t stride = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float last = static_cast<float>(sizes[axis] - 1);
+      const Float inside = hn::Min(hn::Max(at[axis], constant(0.0f)), constant(last));
+      const Int index = hn::Min(hn::ConvertTo(kInt, inside), hn::Set(kInt, sizes[axis] > 1 ? sizes[axis] - 2 : 0));
+      t[axis] = hn::Sub(inside, hn::ConvertTo(kFloat, index));
+      node = hn::Add(node, hn::Mul(index, hn::Set(kInt, stride)));
+      step[axis] = hn::Set(kInt, sizes[axis] > 1 ? stride : 0);
+      stride *= sizes[axis];
+    }
+  }
+};
+
+/// What comes through from a light: optical depth linear along the light, transmittance linear across it, so that both
+/// a homogeneous medium and the edge of a shadow are smooth (percentage closer filtering; Reeves, Salesin, Cook 1987).
+HWY_INLINE Float look_up_transmittance(const float* depths, const std::int32_t sizes[3], const Triple& place) {
+  const LatticePlace at(sizes, place);
+  const auto mixed = [](Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); };
+  const auto through = [&](Int i) {
+    const Float near = hn::GatherIndex(kFloat, depths, i),
+                far = hn::GatherIndex(kFloat, depths, hn::Add(i, at.step[2]));
+    return exp_negative(hn::Max(mixed(at.t[2], near, far), constant(0.0f)));
+  };
+  const auto edge = [&](Int i) { return mixed(at.t[0], through(i), through(hn::Add(i, at.step[0]))); };
+  return mixed(at.t[1], edge(at.node), edge(hn::Add(at.node, at.step[1])));
+}
+
+/// Four floats at each point of a lattice, trilinear in between, clamped outside.
+HWY_INLINE Record look_up_records(const float* records, const std::int32_t sizes[3], const Triple& place) {
+  const LatticePlace at(sizes, place);
+  const auto mixed = [](Float f, const Record& a, const Record& b) {
+    const auto channel = [&](Float p, Float q) { return multiply_add(f, hn::Sub(q, p), p); };
+    return Record{channel(a.x, b.x), channel(a.y, b.y), channel(a.z, b.z), channel(a.w, b.w)};
+  };
+  const auto load = [&](Int i) { return load_table_records(records, hn::BitCast(kUint, i)); };
+  const auto edge = [&](Int i) { return mixed(at.t[0], load(i), load(hn::Add(i, at.step[0]))); };
+  const auto square = [&](Int i) { return mixed(at.t[1], edge(i), edge(hn::Add(i, at.step[1]))); };
+  return mixed(at.t[2], square(at.node), square(hn::Add(at.node, at.step[2])));
+}
+
+/// What a place is lit with: the colour that is emitted there is multiplied by `diffuse`, and `specular` is added to
+/// it.
+struct Illumination {
+  Triple diffuse, specular;
+};
+
+/// A place that is to be lit. Camera frame.
+struct ShadedPlace {
+  Triple position;
+  Triple gradient;  ///< stored scalars a local length
+  Triple to_eye;    ///< unit vector
+  Mask lanes;       ///< those that want light
+  bool is_surface;  ///< lit in full strength, and moved off itself before shadows are looked up
+};
+
+/// Part of the light of a source that reaches a place.
+HWY_INLINE Float find_visibility(const Shading& shading, const LightSource& light, const ShadedPlace& place,
+                                 const Triple& normal, const Triple& to_light) {
+  Triple from = place.position;
+  if (place.is_surface) {
+    // Off the surface, to the side that the light comes from.
+    const Float bias = constant(shading.shadow_bias);
+    const Float side = hn::CopySign(bias, dot(normal, to_light));
+    from = sum_of(from, sum_of(scaled(normal, side), scaled(to_light, bias)));
+  }
+  if (shading.trace) {
+    HWY_ALIGN float at[3][kLanes], found[kLanes];
+    HWY_ALIGN std::uint32_t wanted[kLanes];
+    hn::Store(from.x, kFloat, at[0]);
+    hn::Store(from.y, kFloat, at[1]);
+    hn::Store(from.z, kFloat, at[2]);
+    hn::Store(hn::IfThenElseZero(uint_mask(place.lanes), hn::Set(kUint, 1)), kUint, wanted);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const float start[3] = {at[0][i], at[1][i], at[2][i]};
+      found[i] = wanted[i] ? shading.trace(shading.tracer, start, light) : 0.0f;
+    }
+    return exp_negative(hn::Max(hn::Load(kFloat, found), constant(0.0f)));
+  }
+  Float through = constant(1.0f);
+  for (const ShadowMap& map : light.shadows) {
+    Triple q = transform(map.light_from_camera, 4, from);
+    Mask here = place.lanes;
+    if (map.is_perspective) {
+      // The face of the cube that the place is seen through.
+      const Float reach = hn::Max(hn::Abs(q.x), hn::Abs(q.y));
+      here = hn::And(hn::Gt(q.z, constant(0.0f)), hn::Ge(q.z, reach));
+      const Float inverse = hn::Div(constant(1.0f), hn::Max(q.z, constant(1e-20f)));
+      q.x = hn::Mul(q.x, inverse);
+      q.y = hn::Mul(q.y, inverse);
+    }
+    if (hn::AllFalse(kFloat, here)) continue;
+    const Triple at{multiply_add(q.x, constant(map.scale[0]), constant(map.offset[0])),
+                    multiply_add(q.y, constant(map.scale[1]), constant(map.offset[1])),
+                    multiply_add(q.z, constant(map.scale[2]), constant(map.offset[2]))};
+    through = hn::IfThenElse(here, look_up_transmittance(map.depths, map.sizes, at), through);
+  }
+  return through;
+}
+
+/// Part of the surroundings that lights the side that `normal` points to: mean and first moments over all directions,
+/// weighted by the cosine (the first two bands of spherical harmonics; Ramamoorthi and Hanrahan 2001).
+HWY_INLINE Float find_openness(const OcclusionMap& map, const Triple& position, const Triple& normal, Float strength) {
+  const Record seen = look_up_records(map.visibility, map.sizes, transform(map.lattice_from_camera, 4, position));
+  const Float towards = dot({seen.x, seen.y, seen.z}, transform(map.world_from_camera, 3, normal));
+  const Float open = multiply_add(hn::Mul(constant(2.0f), strength), towards, seen.w);
+  return hn::Min(hn::Max(open, constant(0.0f)), constant(1.0f));
+}
+
+/// Whether the light comes from the eye alone, so that `illuminate_from_eye` serves.
+inline bool is_lit_from_eye(const Shading& shading) {
+  return shading.lights.size() == 1 && shading.lights[0].kind == LightSource::Kind::kHeadlight &&
+         shading.is_two_sided && !shading.environment && !shading.occlusion && !shading.trace &&
+         shading.lights[0].shadows.empty();
+}
+
+/// `illuminate` for that: normal, view and light meet in one cosine, and nothing need be normalised.
+HWY_INLINE Illumination illuminate_from_eye(const Shading& shading, const Triple& gradient, const Triple& direction) {
+  const Float one = constant(1.0f), tiny = constant(1e-30f);
+  const Float square = dot(gradient, gradient), along = dot(gradient, direction);
+  const Float cosine_square =
+      hn::Min(hn::Div(hn::Mul(along, along), hn::Max(hn::Mul(square, dot(direction, direction)), tiny)), one);
+  const Float strength = hn::Div(square, hn::Max(hn::Add(square, constant(shading.half_strength)), tiny));
+  const Float facing = multiply_add(strength, hn::Sub(hn::Sqrt(cosine_square), one), one);
+  const Float shine =
+      hn::Mul(hn::Mul(strength, constant(shading.specular)), power(cosine_square, 0.5f * shading.shininess));
+  const Float ambient = constant(shading.ambient), diffuse = hn::Mul(constant(shading.diffuse), facing);
+  const float* color = shading.lights[0].color;
+  const auto lit = [&](int i) { return multiply_add(constant(color[i]), diffuse, ambient); };
+  const auto shines = [&](int i) { return hn::Mul(constant(color[i]), shine); };
+  return {{lit(0), lit(1), lit(2)}, {shines(0), shines(1), shines(2)}};
+}
+
+/// The light at a place. Where the gradient is weak, what needs no normal takes the place of what does.
+HWY_NOINLINE inline Illumination illuminate(const Shading& shading, const ShadedPlace& place) {
+  const Float zero = constant(0.0f), one = constant(1.0f);
+  // The normal points to where the field falls; of the two sides, to the eye's.
+  const Float square = dot(place.gradient, place.gradient);
+  const Float inverse = hn::Neg(hn::Div(one, hn::Sqrt(hn::Max(square, constant(1e-30f)))));
+  const Triple outward = scaled(place.gradient, inverse);
+  const Mask turned = hn::Lt(dot(outward, place.to_eye), zero);
+  const Triple normal = scaled(outward, shading.is_two_sided ? hn::IfThenElse(turned, constant(-1.0f), one) : one);
+  Float strength = hn::Div(square, hn::Max(hn::Add(square, constant(shading.half_strength)), constant(1e-30f)));
+  if (place.is_surface) strength = hn::IfThenElseZero(hn::Gt(square, constant(1e-30f)), one);
+  const Float weakness = hn::Sub(one, strength);
+
+  Float openness = one;
+  if (shading.occlusion) {
+    const Float off = constant(place.is_surface ? shading.shadow_bias : 0.0f);
+    openness = find_openness(*shading.occlusion, sum_of(place.position, scaled(normal, off)), normal, strength);
+  }
+  const Float ambient = hn::Mul(constant(shading.ambient), openness);
+  Illumination light{{ambient, ambient, ambient}, {zero, zero, zero}};
+  for (const LightSource& source : shading.lights) {
+    Triple to_light = place.to_eye;
+    if (source.kind == LightSource::Kind::kDirectional) to_light = constant_triple(source.vector);
+    if (source.kind == LightSource::Kind::kPoint)
+      to_light = normalized(sum_of(constant_triple(source.vector), scaled(place.position, constant(-1.0f))));
+    const bool is_headlight = source.kind == LightSource::Kind::kHeadlight;
+    const Triple half = is_headlight ? to_light : normalized(sum_of(to_light, place.to_eye));
+    const auto facing = [&](Float cosine) { return shading.is_two_sided ? hn::Abs(cosine) : hn::Max(cosine, zero); };
+    const Float cosine = dot(normal, to_light);
+    const Float diffuse = multiply_add(strength, facing(cosine), weakness);
+    const Float shine = power(hn::Min(facing(dot(normal, half)), one), shading.shininess);
+    Float specular = hn::Mul(strength, hn::Mul(constant(shading.specular), shine));
+    if (!shading.is_two_sided) specular = hn::IfThenElseZero(hn::Gt(cosine, zero), specular);
+    Float reaching = one;
+    if (!source.shadows.empty() || shading.trace) reaching = find_visibility(shading, source, place, normal, to_light);
+    const Triple color = scaled(constant_triple(source.color), reaching);
+    light.diffuse = sum_of(light.diffuse, scaled(color, hn::Mul(constant(shading.diffuse), diffuse)));
+    light.specular = sum_of(light.specular, scaled(color, specular));
+  }
+  return light;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetravox::cpu
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,25 @@
+#include "src/optics/centroid_table.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace tetravox::optics {
+
+void build_centroid_table(const AntiderivativeTable& antiderivative, CentroidTable& table) {
+  table.first = antiderivative.first;
+  table.nodes_per_scalar = antiderivative.nodes_per_scalar;
+  table.last_node = antiderivative.last_node;
+  const std::int32_t count = table.last_node;
+  table.sums.assign(4 * (static_cast<std::size_t>(count) + 1), 0);
+  double moment = 0.0;
+  for (std::int32_t i = 0; i < count; ++i) {
+    const std::int32_t low = antiderivative.entries[i].sums[0], high = antiderivative.entries[i + 1].sums[0];
+    // Within one interval between nodes the extinction counts as even.
+    moment += (static_cast<double>(high) - low) * (i + 0.5) / count;
+    const std::size_t node = 4 * (static_cast<std::size_t>(i) + 1);
+    table.sums[node] = high;
+    table.sums[node + 1] = static_cast<std::int32_t>(std::lround(moment));
+  }
+}
+
+}  // namespace tetravox::optics

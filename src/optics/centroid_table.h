@@ -1,0 +1,27 @@
+#pragma once
+
+/// Where in a segment its emission lies: first moments of the extinction over the scalar.
+///
+/// Along a segment the scalar is linear, so that the mean place of its extinction is that of its mean scalar,
+/// (M(b) - M(a)) / (T(b) - T(a)) with T the antiderivative of rho(s) and M that of s rho(s).
+
+#include "src/optics/antiderivative_table.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace tetravox::optics {
+
+struct CentroidTable {
+  float first = 0.0f;  ///< stored scalar of node 0
+  float nodes_per_scalar = 0.0f;
+  std::int32_t last_node = 0;
+  /// [last_node + 1][4]: T, and M with the scalar counted from 0 at the first node to 1 at the last, in one fixed-point
+  /// unit; two words of padding, since records of 16 bytes are the fastest to load.
+  std::vector<std::int32_t> sums;
+};
+
+/// From the antiderivatives of the same function.
+void build_centroid_table(const AntiderivativeTable& antiderivative, CentroidTable& table);
+
+}  // namespace tetravox::optics
