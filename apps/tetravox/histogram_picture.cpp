@@ -25,7 +25,7 @@ constexpr double kMostDecades = 7.0;  // that a logarithm shows
 /// Digits three pixels wide and five high: a bit for each pixel, the top left one first.
 constexpr char kGlyphNames[] = "0123456789.-+e";
 constexpr std::array<std::uint16_t, 14> kGlyphs{
-    0b111'101'101'101'111, 0b010'110'010'010'111, 0b111'001'111'100'111, 0b111'001'111'001'111, 0b101'101'111'001'001,
+    0b010'101'101'101'010, 0b010'110'010'010'111, 0b111'001'111'100'111, 0b111'001'111'001'111, 0b101'101'111'001'001,
     0b111'100'111'001'111, 0b111'100'111'101'111, 0b111'001'010'010'010, 0b111'101'111'101'111, 0b111'101'111'001'111,
     0b000'000'000'000'010, 0b000'000'111'000'000, 0b000'010'111'010'000, 0b010'101'111'100'011};
 constexpr int kGlyphScale = 2, kGlyphStep = 4 * kGlyphScale, kGlyphHeight = 5 * kGlyphScale;
@@ -44,7 +44,7 @@ std::vector<double> make_ticks(const ValueRange& range) {
     if (width / (factor * decade) <= kMostTicks) step = factor * decade;
   std::vector<double> ticks;
   for (double n = std::ceil(range.min / step - 1e-9); n * step <= range.max + 1e-9 * width && ticks.size() < 20; ++n)
-    ticks.push_back(n * step);
+    ticks.push_back(n * step + 0.0);  // never -0
   return ticks;
 }
 

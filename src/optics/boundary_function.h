@@ -23,8 +23,9 @@ struct BoundaryPositions {
 };
 
 /// With mean first and second derivatives g(v), h(v): sigma = 2 sqrt(e) max(g) / (max(h) - min(h)), and
-/// p(v) = -sigma h(v) / max(g(v) - g_threshold, 0) in units of sigma. As in the paper, but both derivatives are summed
-/// before they are divided, and smoothed over neighbouring bins.
+/// p(v) = -sigma h(v) / max(g(v) - g_threshold, 0) in units of sigma. As in the paper, but the means are
+/// smoothed over neighbouring bins, and the largest and smallest are those without the hundredth of the area of all
+/// iso-surfaces (the sum of first derivatives) that is beyond.
 BoundaryPositions find_boundary_positions(const DerivativeProfile& profile);
 
 /// How a function is made of a profile.

@@ -47,7 +47,7 @@ std::vector<double> smoothed(const std::vector<double>& shares, double sigma) {
   return result;
 }
 
-std::vector<double> positions(const std::vector<double>& shares) {
+std::vector<double> positions(const std::vector<double>& shares, double part_by_value) {
   std::vector<double> u(shares.size());
   double total = 0.0;
   for (const double share : shares) total += std::sqrt(share);
@@ -55,7 +55,7 @@ std::vector<double> positions(const std::vector<double>& shares) {
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const double root = std::sqrt(shares[i]);
     const double by_value = (static_cast<double>(i) + 0.5) / static_cast<double>(shares.size());
-    u[i] = 0.5 * by_value + 0.5 * (below + 0.5 * root) / total;
+    u[i] = total > 0.0 ? std::lerp((below + 0.5 * root) / total, by_value, part_by_value) : by_value;
     below += root;
   }
   return u;

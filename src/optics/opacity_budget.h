@@ -22,9 +22,9 @@ Color color_at(double u, bool invert);
 /// Smoothed by a Gaussian whose standard deviation is `sigma` bins; the sum stays.
 std::vector<double> smoothed(const std::vector<double>& shares, double sigma);
 
-/// Position of each bin in [0, 1]: half by value, half by the square root of how frequent values are, so that skewed
-/// data still has many colours.
-std::vector<double> positions(const std::vector<double>& shares);
+/// Position of each bin in [0, 1]: in part by value, the rest by the square root of how frequent values are, so that
+/// skewed data still has many colours.
+std::vector<double> positions(const std::vector<double>& shares, double part_by_value = 0.5);
 
 /// The largest share of each bin and its two neighbours: a value at the edge of a bin is drawn with both.
 std::vector<double> widened(const std::vector<double>& shares);
