@@ -2,6 +2,7 @@
 
 #include "apps/tetravox/text.h"
 
+#include "tetravox/analysis.h"
 #include "tetravox/error.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <fstream>
 #include <sstream>
 #include <utility>
+#include <variant>
 
 namespace tetravox::tool {
 namespace {
@@ -65,9 +67,25 @@ TransferFunction read_function(const FunctionOptions& options, const Body& body)
   return parse_transfer_function(text, options.function, options.preset_name, preset, true);
 }
 
+/// "auto:boundaries" or "auto:boundaries=T": made from the data.
+TransferFunction make_automatic_function(const FunctionOptions& options, const Body& body) {
+  const std::string name = options.function.substr(0, options.function.find('='));
+  if (name != "auto:boundaries")
+    throw UsageError("--transfer-function: '" + options.function + "' is not known; there is: auto:boundaries=T");
+  if (options.use_logarithm) throw UsageError("--log: auto:boundaries follows the values themselves: leave it out");
+  BoundaryOptions boundaries;
+  if (name.size() < options.function.size())
+    boundaries.thickness =
+        parse_positive_number("--transfer-function auto:boundaries", options.function.substr(name.size() + 1));
+  boundaries.range = options.range;
+  boundaries.invert = options.invert;
+  return std::visit([&](const auto& prepared) { return make_boundary_transfer_function(prepared, boundaries); }, body);
+}
+
 TransferFunction make_named_function(const FunctionOptions& options, const Body& body) {
   if (!options.preset_name.empty())
     throw UsageError("--preset-name: picks from a file, and '" + options.function + "' is a preset: leave it out");
+  if (options.function.starts_with("auto:")) return make_automatic_function(options, body);
   PresetOptions preset;
   preset.range = range_of(options, body);
   preset.logarithmic = options.use_logarithm;

@@ -32,12 +32,19 @@ Rows builtin_rows() {
   return rows;
 }
 
+Rows function_rows() {
+  Rows rows = preset_names();
+  rows.emplace_back("auto:boundaries=T",
+                    "from the data: opaque between materials, T times as thick as they are blurred");
+  return rows;
+}
+
 }  // namespace
 
 void run_list(const ListOptions& options) {
   switch (options.topic) {
     case ListOptions::Topic::kPresets:
-      std::cout << with_title("Presets for --transfer-function, as COLOURS or COLOURS:OPACITY:", preset_names());
+      std::cout << with_title("Presets for --transfer-function, as COLOURS or COLOURS:OPACITY:", function_rows());
       break;
     case ListOptions::Topic::kReaders:
       std::cout << with_title("Files that can be read:", reader_names())

@@ -1,6 +1,7 @@
 #include "apps/tetravox/options.h"
 
 #include "apps/tetravox/method_choice.h"
+#include "apps/tetravox/options_histogram.h"
 #include "apps/tetravox/text.h"
 
 #include "tetravox/error.h"
@@ -35,6 +36,7 @@ constexpr char kExamples[] = R"(Examples:
   tetravox render scene.json --resolution 1920,1080 the scene in a file, larger
   tetravox render engine.png -o again.png           the scene that a picture holds
   tetravox info engine.vtu                          cells, arrays, bounds, memory
+  tetravox histogram engine.vtu                     how much volume each value takes: engine-histogram.png
   tetravox list presets                             names for --transfer-function
 )";
 
@@ -255,9 +257,11 @@ struct Parser {
   CLI::App app{kIntroduction, "tetravox"};
   CLI::App* render = nullptr;
   CLI::App* info = nullptr;
+  CLI::App* histogram = nullptr;
   CLI::App* list = nullptr;
   RenderOptions render_options;
   InfoOptions info_options;
+  HistogramCommandOptions histogram_options;
   std::string topic;
 
   Parser();
@@ -296,6 +300,11 @@ Parser::Parser() {
   app.option_defaults()->group("OPTIONS");
   info->add_flag("--json", info_options.use_json, "Print JSON");
 
+  histogram = add_command(app, "histogram", "Count the volume of each value, and of each gradient");
+  add_input(*histogram, histogram_options.input);
+  add_raw_layout(*histogram, histogram_options.input);
+  add_histogram(*histogram, histogram_options);
+
   list = add_command(app, "list", "List presets, readers, builtins or methods");
   list->add_option("TOPIC", topic, "presets, readers, builtins or methods")->type_name("");
 }
@@ -311,7 +320,7 @@ void Parser::refuse_unknown(const CLI::App& command) const {
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   const bool is_main = &command == &app;
-  if (is_main) known = {"render", "info", "list", "--help", "--version"};
+  if (is_main) known = {"render", "info", "histogram", "list", "--help", "--version"};
   const std::string closest = closest_word(word, known);
   std::string message = (word[0] == '-' ? "unknown option '"
                          : is_main      ? "unknown command '"
@@ -325,7 +334,7 @@ void Parser::refuse_unknown(const CLI::App& command) const {
 }
 
 CommandLine Parser::result() {
-  for (const CLI::App* command : {render, info, list})
+  for (const CLI::App* command : {render, info, histogram, list})
     if (command->parsed()) refuse_unknown(*command);
   refuse_unknown(app);
   const auto require_input = [](const InputOptions& input) {
@@ -345,11 +354,15 @@ CommandLine Parser::result() {
     require_input(info_options.input);
     return info_options;
   }
+  if (histogram->parsed()) {
+    require_input(histogram_options.input);
+    return histogram_options;
+  }
   if (list->parsed()) {
     if (topic.empty()) throw UsageError("list what? presets, readers, builtins or methods");
     return ListOptions{topic_from_name(topic)};
   }
-  throw UsageError("name a command: render, info or list");
+  throw UsageError("name a command: render, info, histogram or list");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 
 namespace tetravox::tool {
 
-/// What is read: shared by `render` and `info`.
+/// What is read: shared by `render`, `info` and `histogram`.
 struct InputOptions {
   std::string input;
   std::string array;
@@ -87,6 +87,21 @@ struct InfoOptions {
   bool use_json = false;
 };
 
+/// What a histogram counts.
+enum class HistogramKind {
+  kValue,    ///< the volume that each value takes
+  kGradient  ///< by value and gradient magnitude
+};
+
+struct HistogramCommandOptions {
+  InputOptions input;
+  std::string output;  ///< empty: the input's name with "-histogram.png" in the current directory
+  HistogramKind kind = HistogramKind::kValue;
+  std::optional<bool> use_logarithm;  ///< of the counts; empty: for kGradient only
+  std::optional<int> bins, gradient_bins;
+  std::optional<ValueRange> range, gradient_range;
+};
+
 struct ListOptions {
   enum class Topic { kPresets, kReaders, kBuiltins, kMethods };
   Topic topic = Topic::kPresets;
@@ -97,7 +112,7 @@ struct TextOptions {
   std::string text;
 };
 
-using CommandLine = std::variant<TextOptions, RenderOptions, InfoOptions, ListOptions>;
+using CommandLine = std::variant<TextOptions, RenderOptions, InfoOptions, HistogramCommandOptions, ListOptions>;
 
 /// @throws UsageError that names the option.
 CommandLine parse_command_line(int argc, const char* const* argv);

@@ -26,6 +26,7 @@ int run_command(const CommandLine& command_line) {
   if (const auto* text = std::get_if<TextOptions>(&command_line)) std::cout << text->text;
   if (const auto* options = std::get_if<RenderOptions>(&command_line)) run_render(*options);
   if (const auto* options = std::get_if<InfoOptions>(&command_line)) run_info(*options);
+  if (const auto* options = std::get_if<HistogramCommandOptions>(&command_line)) run_histogram(*options);
   if (const auto* options = std::get_if<ListOptions>(&command_line)) run_list(*options);
   if (!std::cout.flush()) throw Error(ErrorCode::kCannotWrite, "cannot write to standard output");
   return kDone;
@@ -34,7 +35,7 @@ int run_command(const CommandLine& command_line) {
 /// Where to read on after a wrong command line.
 std::string help_hint(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
-  const bool is_command = command == "render" || command == "info" || command == "list";
+  const bool is_command = command == "render" || command == "info" || command == "histogram" || command == "list";
   return " (see tetravox " + (is_command ? command + " " : "") + "--help)";
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The command line tool: `tetravox render | info | list`.
+/// The command line tool: `tetravox render | info | histogram | list`.
 
 namespace tetravox::tool {
 

@@ -10,7 +10,9 @@
 #include "tetravox/progress.h"
 #include "tetravox/scene.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +63,10 @@ WriteOptions read_image_options(const std::string& path);
 
 /// Writes a text file in the same way: all of it or nothing. @throws Error (kCannotWrite).
 void write_text_file(const std::string& path, const std::string& text);
+
+/// Writes numbers as an .npy file of float64 with this shape, last axis fastest, in the same way.
+/// @throws Error: kCannotWrite; kInvalidArgument where the shape does not hold as many numbers.
+void write_array(const std::string& path, std::span<const double> values, const std::vector<std::size_t>& shape);
 
 /// Bytes that this process may still allocate without swapping or the OOM killer (limits of the machine and its control
 /// groups).

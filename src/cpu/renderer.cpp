@@ -37,6 +37,10 @@ void validate_settings(const RenderSettings& settings) {
     fail("tolerance must be between 1e-7 and 1");
   if (!(settings.samples_per_voxel >= 0.0 && settings.samples_per_voxel <= kHighestRate))
     fail("samples per voxel must be between 0 (as the tolerance asks) and 64");
+  if (!(settings.opacity_weight_scale > 0.0)) fail("the scale of the opacity weight must be above 0");
+  validate_lighting(settings.lighting);
+  validate_isosurfaces(settings.surfaces);
+  validate_clipping(settings.clipping);
   if (settings.threads < 0 || settings.threads > 4096) fail("threads must be between 0 (all cores) and 4096");
 }
 

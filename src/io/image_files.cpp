@@ -76,6 +76,18 @@ void write_text_file(const std::string& path, const std::string& text) {
   file.commit();
 }
 
+void write_array(const std::string& path, std::span<const double> values, const std::vector<std::size_t>& shape) {
+  std::size_t wanted = 1;
+  for (const std::size_t length : shape) wanted *= length;
+  if (shape.empty() || wanted != values.size())
+    throw Error(ErrorCode::kInvalidArgument, "an array of this shape needs " + std::to_string(wanted) +
+                                                 " numbers and has " + std::to_string(values.size()));
+  io::OutputFile file(path);
+  io::write_npy_header(file, "<f8", shape);
+  file.write(values.data(), values.size_bytes());
+  file.commit();
+}
+
 std::uint64_t available_memory() { return support::available_memory(); }
 
 }  // namespace tetravox

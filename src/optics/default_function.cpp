@@ -1,4 +1,4 @@
-#include "src/optics/color_maps.h"
+#include "src/optics/opacity_budget.h"
 #include "tetravox/error.h"
 #include "tetravox/transfer_function.h"
 
@@ -8,13 +8,10 @@
 namespace tetravox {
 namespace {
 
-// A ray across a cube is 58 hundredths of the diagonal long; most objects are a little thinner.
-constexpr double kRayLength = 50.0;
-constexpr double kOpticalDepth = 2.0;      // of a ray through everything
-constexpr double kSolidExtinction = 0.6;   // of rare values, in a hundredth of the diagonal
-constexpr double kBodyExtinction = 0.025;  // where all is alike
-constexpr double kThinnestBody = 0.005;    // of the most frequent values, where rare ones are to be seen
-constexpr double kLeastDepth = 0.9;        // of a ray, if need be with a thicker body
+using optics::color_at;
+using optics::fit_budget;
+using optics::opacity_from_extinction;
+
 constexpr int kShellCount = 6;
 constexpr double kShellWidth = 0.22;  // half width, in distances between shells
 constexpr double kBodyShare = 0.10;   // extinction between the shells, relative to their peaks
@@ -22,14 +19,6 @@ constexpr double kRarity = 0.75;      // 0: alike; 1: every value has the same s
 constexpr double kFadeWidth = 0.04;   // of the range, next to a background
 constexpr std::size_t kLargestLabelCount = 40;
 constexpr std::size_t kLargestBinCount = 1024;
-
-double opacity_from_extinction(double extinction) { return -std::expm1(-extinction); }
-
-/// Colours at u in [0, 1]: the hues of turbo without its dark ends, which would not show on black.
-Color color_at(double u, bool invert) {
-  static const std::vector<optics::ColorMapPoint> points = optics::color_map_points("turbo");
-  return optics::eval_color_map(points, std::lerp(0.09, 0.93, invert ? 1.0 - u : u));
-}
 
 std::vector<double> normalized(const std::vector<double>& counts) {
   std::vector<double> shares(counts.size());
@@ -50,80 +39,11 @@ std::vector<double> rebinned(const std::vector<double>& shares) {
   return result;
 }
 
-/// Smoothed by a Gaussian whose standard deviation is `sigma` bins; the sum stays.
-std::vector<double> smoothed(const std::vector<double>& shares, double sigma) {
-  const int radius = std::max(1, static_cast<int>(std::ceil(3.0 * sigma))), count = static_cast<int>(shares.size());
-  std::vector<double> result(shares.size());
-  for (int i = 0; i < count; ++i) {
-    double sum = 0.0, weights = 0.0;
-    for (int j = std::max(0, i - radius); j <= std::min(count - 1, i + radius); ++j) {
-      const double weight = std::exp(-0.5 * (i - j) * (i - j) / (sigma * sigma));
-      sum += weight * shares[static_cast<std::size_t>(j)];
-      weights += weight;
-    }
-    result[static_cast<std::size_t>(i)] = sum / weights;
-  }
-  return result;
-}
-
-/// Position of each bin in [0, 1]: half by value, half by the square root of how frequent values are, so that skewed
-/// data still has many colours.
-std::vector<double> positions(const std::vector<double>& shares) {
-  std::vector<double> u(shares.size());
-  double total = 0.0;
-  for (const double share : shares) total += std::sqrt(share);
-  double below = 0.0;
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    const double root = std::sqrt(shares[i]);
-    const double by_value = (static_cast<double>(i) + 0.5) / static_cast<double>(shares.size());
-    u[i] = 0.5 * by_value + 0.5 * (below + 0.5 * root) / total;
-    below += root;
-  }
-  return u;
-}
-
-/// Optical depth of a ray on which values are as frequent as in the data.
-double mean_depth(const std::vector<double>& shares, const std::vector<double>& extinctions) {
-  double mean = 0.0;
-  for (std::size_t i = 0; i < shares.size(); ++i) mean += shares[i] * extinctions[i];
-  return kRayLength * mean;
-}
-
-/// The largest share of each bin and its two neighbours: a value at the edge of a bin is drawn with both.
-std::vector<double> widened(const std::vector<double>& shares) {
-  std::vector<double> result = shares;
-  for (std::size_t i = 0; i + 1 < shares.size(); ++i) {
-    result[i] = std::max(result[i], shares[i + 1]);
-    result[i + 1] = std::max(result[i + 1], shares[i]);
-  }
-  return result;
-}
-
-/// Scales extinctions to the budget of optical depth. Rare values may be nearly solid. The most frequent ones, by
-/// `crowds`, stay below `body`, which is raised only as far as it takes to see something at all.
-std::vector<double> fit_budget(const std::vector<double>& shares, const std::vector<double>& crowds,
-                               const std::vector<double>& extinctions) {
-  std::vector<double> fitted;
-  for (double body = kThinnestBody; body <= kBodyExtinction; body *= 1.25) {
-    fitted = extinctions;
-    for (int pass = 0; pass < 8; ++pass) {
-      const double depth = mean_depth(shares, fitted);
-      if (!(depth > 0.0)) break;
-      for (std::size_t i = 0; i < shares.size(); ++i) {
-        const double density = crowds[i] * static_cast<double>(crowds.size());
-        fitted[i] = std::min(fitted[i] * kOpticalDepth / depth, body + kSolidExtinction / std::max(1.0, density));
-      }
-    }
-    if (mean_depth(shares, fitted) > kLeastDepth) break;
-  }
-  return fitted;
-}
-
 TransferFunction constant_function(const Histogram& histogram, bool invert) {
   TransferFunction function;
   function.unit_distance = histogram.unit_distance;
   function.absorption = Absorption::kOpacity;
-  function.points = {{histogram.range.min, color_at(0.35, invert), opacity_from_extinction(kBodyExtinction)}};
+  function.points = {{histogram.range.min, color_at(0.35, invert), opacity_from_extinction(optics::kBodyExtinction)}};
   return function;
 }
 
@@ -200,8 +120,8 @@ TransferFunction make_default_transfer_function(const Histogram& histogram, bool
     return label_function(histogram, raw, labels, invert);
 
   // Follow the histogram, smoothed: shells at equal steps of position, on a faint body, the thinner the more frequent.
-  const std::vector<double> shares = smoothed(raw, static_cast<double>(raw.size()) / 128.0);
-  const std::vector<double> u = positions(shares);
+  const std::vector<double> shares = optics::smoothed(raw, static_cast<double>(raw.size()) / 128.0);
+  const std::vector<double> u = optics::positions(shares);
   std::vector<double> extinctions(shares.size());
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const double density = shares[i] * static_cast<double>(shares.size());
@@ -209,7 +129,7 @@ TransferFunction make_default_transfer_function(const Histogram& histogram, bool
     const double shell = std::exp(-0.5 * phase * phase / (0.25 * kShellWidth * kShellWidth));
     extinctions[i] = (kBodyShare + shell) * std::pow(density + 0.02, -kRarity);
   }
-  extinctions = fit_budget(raw, widened(raw), extinctions);
+  extinctions = fit_budget(raw, optics::widened(raw), extinctions);
 
   TransferFunction function;
   function.absorption = Absorption::kOpacity;

@@ -19,23 +19,6 @@ constexpr int kValleyBins = 128;          // between the background and the othe
 constexpr double kNothing = 0.01;         // of the background's peak: the histogram has fallen to nothing
 constexpr double kLargestReach = 0.3;     // of the way to the other end that a background may take
 
-/// How much space each value has along an axis: half of the distance to either neighbour, or the width of its cell.
-std::vector<double> widths_along(const GridData& grid, std::size_t axis) {
-  const std::size_t points = grid.shape.dimensions[axis];
-  const std::vector<double>& places = grid.shape.coordinates[axis];
-  const auto width = [&](std::size_t cell) { return places.empty() ? 1.0 : places[cell + 1] - places[cell]; };
-  std::vector<double> widths(grid.value_dimensions()[axis]);
-  for (std::size_t cell = 0; cell + 1 < points; ++cell) {
-    if (grid.association == Association::kCell) {
-      widths[cell] = width(cell);
-    } else {
-      widths[cell] += 0.5 * width(cell);
-      widths[cell + 1] += 0.5 * width(cell);
-    }
-  }
-  return widths;
-}
-
 std::vector<float> read_border(const grid::BlockReader& reader, const std::array<std::size_t, 3>& counts) {
   std::vector<float> border;
   const auto place = [&](std::size_t axis, std::size_t step, std::size_t steps) {
@@ -103,6 +86,32 @@ double find_valley(const GridSamples& samples, double from, double to) {
 
 }  // namespace
 
+std::vector<double> widths_along(const GridData& grid, std::size_t axis) {
+  const std::size_t points = grid.shape.dimensions[axis];
+  const std::vector<double>& places = grid.shape.coordinates[axis];
+  const auto width = [&](std::size_t cell) { return places.empty() ? 1.0 : places[cell + 1] - places[cell]; };
+  std::vector<double> widths(grid.value_dimensions()[axis]);
+  for (std::size_t cell = 0; cell + 1 < points; ++cell) {
+    if (grid.association == Association::kCell) {
+      widths[cell] = width(cell);
+    } else {
+      widths[cell] += 0.5 * width(cell);
+      widths[cell + 1] += 0.5 * width(cell);
+    }
+  }
+  return widths;
+}
+
+std::vector<std::size_t> choose_rows(std::size_t rows, std::size_t wanted) {
+  std::vector<std::size_t> chosen(wanted);
+  for (std::size_t n = 0; n < wanted; ++n) {
+    const double golden = std::fmod(0.6180339887498949 * static_cast<double>(n), 1.0);
+    const double at = (static_cast<double>(n) + (wanted < rows ? golden : 0.5)) * static_cast<double>(rows);
+    chosen[n] = std::min(rows - 1, static_cast<std::size_t>(at / static_cast<double>(wanted)));
+  }
+  return chosen;
+}
+
 GridSamples sample_grid(const PreparedGrid& grid, std::size_t largest_count) {
   const grid::BlockReader reader(grid.data, {grid.scalar_offset, grid.scalar_scale});
   const std::array<std::size_t, 3> counts = grid.data.value_dimensions();
@@ -112,11 +121,7 @@ GridSamples sample_grid(const PreparedGrid& grid, std::size_t largest_count) {
   const std::size_t wanted = std::clamp<std::size_t>(largest_count / counts[0], 1, rows);
   GridSamples samples;
   std::vector<float> row(counts[0]);
-  for (std::size_t n = 0; n < wanted; ++n) {
-    // One row of each stratum, at a place that shares no period with the grid's (golden ratio).
-    const double golden = std::fmod(0.6180339887498949 * static_cast<double>(n), 1.0);
-    const double at = (static_cast<double>(n) + (wanted < rows ? golden : 0.5)) * static_cast<double>(rows);
-    const std::size_t index = std::min(rows - 1, static_cast<std::size_t>(at / static_cast<double>(wanted)));
+  for (const std::size_t index : choose_rows(rows, wanted)) {
     const std::size_t j = index % counts[1], k = index / counts[1];
     const grid::Block block{{0, static_cast<std::int64_t>(j), static_cast<std::int64_t>(k)},
                             {static_cast<std::int64_t>(counts[0]), 1, 1}};

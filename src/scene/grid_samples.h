@@ -16,6 +16,14 @@ struct GridSamples {
   std::vector<float> border;           ///< values on the six faces of the grid, evenly, without missing ones; ascending
 };
 
+/// How much space each value has along an axis: half of the distance to either neighbour, or the width of its cell. In
+/// cells, or in units of an uneven axis.
+std::vector<double> widths_along(const GridData& grid, std::size_t axis);
+
+/// `wanted` of `rows` rows of values, spread evenly, ascending: all, or one of each stratum at a place that shares no
+/// period with the grid's (golden ratio). `wanted` in [1, rows].
+std::vector<std::size_t> choose_rows(std::size_t rows, std::size_t wanted);
+
 /// All rows of values, or evenly spread ones with about `largest_count` values. Deterministic.
 GridSamples sample_grid(const PreparedGrid& grid, std::size_t largest_count);
 

@@ -1,4 +1,5 @@
 #include "src/optics/transfer_function_json.h"
+#include "src/scene/scene_effects.h"
 #include "tetravox/error.h"
 #include "tetravox/scene.h"
 
@@ -123,8 +124,8 @@ void read_image(const JsonPlace& place, Scene& scene) {
 }
 
 void read_render(const JsonPlace& place, RenderSettings& settings) {
-  place.require_keys(
-      {"source", "integrator", "filter", "tolerance", "samples", "samples_per_voxel", "early_ray_termination"});
+  place.require_keys({"source", "integrator", "filter", "tolerance", "samples", "samples_per_voxel", "opacity_weight",
+                      "opacity_weight_scale", "early_ray_termination"});
   if (const auto source = place.find("source"))
     settings.source = at_place(*source, [&] { return source_from_name(source->string()); });
   if (const auto integrator = place.find("integrator"))
@@ -142,6 +143,12 @@ void read_render(const JsonPlace& place, RenderSettings& settings) {
     settings.samples_per_voxel = rate->number();
     if (!(settings.samples_per_voxel > 0.0 && settings.samples_per_voxel <= kLargestRate))
       rate->fail("expected a number above 0, at most 64; leave it out for as many as the tolerance asks");
+  }
+  if (const auto weight = place.find("opacity_weight"))
+    settings.opacity_weight = at_place(*weight, [&] { return opacity_weight_from_name(weight->string()); });
+  if (const auto scale = place.find("opacity_weight_scale")) {
+    settings.opacity_weight_scale = scale->number();
+    if (!(settings.opacity_weight_scale > 0.0)) scale->fail("expected a number above 0");
   }
   if (const auto use = place.find("early_ray_termination")) settings.use_early_ray_termination = use->boolean();
 }
@@ -213,6 +220,10 @@ Json write_render(const RenderSettings& settings) {
   json["tolerance"] = settings.tolerance;
   json["samples"] = settings.samples;
   if (settings.samples_per_voxel > 0.0) json["samples_per_voxel"] = settings.samples_per_voxel;
+  if (settings.opacity_weight != OpacityWeight::kNone) {
+    json["opacity_weight"] = name_of(settings.opacity_weight);
+    json["opacity_weight_scale"] = settings.opacity_weight_scale;
+  }
   json["early_ray_termination"] = settings.use_early_ray_termination;
   return json;
 }
@@ -223,11 +234,17 @@ Scene parse_scene(const std::string& text, const std::string& source_name) {
   const nlohmann::json json = optics::parse_json(text, source_name);
   const JsonPlace root(json, source_name);
   require_version(root);
-  root.require_keys({"tetravox", "data", "transfer_function", "camera", "image", "render"});
+  root.require_keys({"tetravox", "data", "transfer_function", "domain_function", "surfaces", "clipping", "lighting",
+                     "camera", "image", "render"});
   Scene scene;
   scene.data = read_data(root.at("data"));
   if (const auto function = root.find("transfer_function"))
     scene.transfer_function = optics::read_scene_function(*function);
+  if (const auto function = root.find("domain_function"))
+    scene.domain_function = scene::read_domain_function(*function);
+  if (const auto surfaces = root.find("surfaces")) scene.settings.surfaces = scene::read_surfaces(*surfaces);
+  if (const auto clipping = root.find("clipping")) scene.settings.clipping = scene::read_clipping(*clipping);
+  if (const auto lighting = root.find("lighting")) scene.settings.lighting = scene::read_lighting(*lighting);
   if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera);
   if (const auto image = root.find("image")) read_image(*image, scene);
   if (const auto render = root.find("render")) read_render(*render, scene.settings);
@@ -239,6 +256,11 @@ std::string format_scene(const Scene& scene) {
   json["tetravox"] = kSceneVersion;
   json["data"] = write_data(scene.data);
   if (scene.transfer_function) json["transfer_function"] = optics::write_scene_function(*scene.transfer_function);
+  if (scene.domain_function) json["domain_function"] = scene::write_domain_function(*scene.domain_function);
+  const RenderSettings& settings = scene.settings;
+  if (!settings.surfaces.empty()) json["surfaces"] = scene::write_surfaces(settings.surfaces);
+  if (!settings.clipping.shapes.empty()) json["clipping"] = scene::write_clipping(settings.clipping);
+  if (!scene::is_default(settings.lighting)) json["lighting"] = scene::write_lighting(settings.lighting);
   if (scene.camera) json["camera"] = write_camera(*scene.camera);
   json["image"]["resolution"] = {scene.settings.width, scene.settings.height};
   json["image"]["background"] = scene.background;

@@ -1,0 +1,355 @@
+#include "src/scene/scene_effects.h"
+
+#include "src/optics/transfer_function_json.h"
+#include "tetravox/error.h"
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace tetravox::scene {
+namespace {
+
+using optics::JsonPlace;
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::pair<DomainAxis::Kind, const char*>, 3> kAxisKinds{
+    {{DomainAxis::Kind::kValue, "value"},
+     {DomainAxis::Kind::kGradientMagnitude, "gradient-magnitude"},
+     {DomainAxis::Kind::kArray, "array"}}};
+constexpr std::array<std::pair<DomainPrimitive::Shape, const char*>, 3> kPrimitiveShapes{
+    {{DomainPrimitive::Shape::kRectangle, "rectangle"},
+     {DomainPrimitive::Shape::kTriangle, "triangle"},
+     {DomainPrimitive::Shape::kGaussian, "gaussian"}}};
+
+template <class Names>
+auto read_name(const JsonPlace& place, const Names& names) {
+  std::string known;
+  for (const auto& [value, name] : names) {
+    if (place.string() == name) return value;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  }
+  place.fail("expected one of: " + known);
+}
+
+template <class Names, class Value>
+std::string write_name(const Names& names, Value wanted) {
+  for (const auto& [value, name] : names)
+    if (value == wanted) return name;
+  return {};
+}
+
+/// Calls `action`; what it throws is told as an error of the file, at `place`.
+template <class Action>
+auto at_place(const JsonPlace& place, const Action& action) {
+  try {
+    return action();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kInvalidArgument) throw;
+    place.fail(error.what());
+  }
+}
+
+void read_number(const JsonPlace& place, const char* key, double& value) {
+  if (const auto member = place.find(key)) value = member->number();
+}
+
+Light read_light(const JsonPlace& place) {
+  place.require_keys({"kind", "direction", "position", "color", "intensity"});
+  Light light;
+  const JsonPlace kind = place.at("kind");
+  light.kind = at_place(kind, [&] { return light_kind_from_name(kind.string()); });
+  if (light.kind == LightKind::kDirectional) place.at("direction").numbers(light.direction.data(), 3);
+  if (light.kind == LightKind::kPoint) place.at("position").numbers(light.position.data(), 3);
+  if (const auto color = place.find("color")) color->numbers(light.color.data(), 3);
+  read_number(place, "intensity", light.intensity);
+  return light;
+}
+
+Json write_light(const Light& light) {
+  Json json;
+  json["kind"] = name_of(light.kind);
+  if (light.kind == LightKind::kDirectional) json["direction"] = light.direction;
+  if (light.kind == LightKind::kPoint) json["position"] = light.position;
+  json["color"] = light.color;
+  json["intensity"] = light.intensity;
+  return json;
+}
+
+void read_material(const JsonPlace& place, Material& material) {
+  place.require_keys({"ambient", "diffuse", "specular", "shininess"});
+  read_number(place, "ambient", material.ambient);
+  read_number(place, "diffuse", material.diffuse);
+  read_number(place, "specular", material.specular);
+  read_number(place, "shininess", material.shininess);
+}
+
+void read_environment(const JsonPlace& place, Environment& environment) {
+  place.require_keys({"map", "diffuse", "specular", "roughness"});
+  environment.map = place.at("map").string();
+  read_number(place, "diffuse", environment.diffuse);
+  read_number(place, "specular", environment.specular);
+  read_number(place, "roughness", environment.roughness);
+}
+
+bool read_keep(const JsonPlace& place) {
+  const auto keep = place.find("keep");
+  if (!keep || keep->string() == "inside") return true;
+  if (keep->string() != "outside") keep->fail("expected \"inside\" or \"outside\"");
+  return false;
+}
+
+ClipShape read_clip_shape(const JsonPlace& place) {
+  place.require_keys({"plane", "box", "sphere", "volume", "keep"});
+  ClipShape shape;
+  int count = 0;
+  if (const auto plane = place.find("plane")) {
+    plane->require_keys({"origin", "normal"});
+    ClipPlane made;
+    plane->at("origin").numbers(made.origin.data(), 3);
+    plane->at("normal").numbers(made.normal.data(), 3);
+    shape.shape = made;
+    ++count;
+  }
+  if (const auto box = place.find("box")) {
+    ClipBox made;
+    if (box->size() != 3) box->fail("expected three pairs of numbers, along x, y and z");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double bounds[2];
+      box->at(axis).numbers(bounds, 2);
+      made.bounds[axis] = {bounds[0], bounds[1]};
+    }
+    shape.shape = made;
+    ++count;
+  }
+  if (const auto sphere = place.find("sphere")) {
+    sphere->require_keys({"center", "radius"});
+    ClipSphere made;
+    sphere->at("center").numbers(made.center.data(), 3);
+    made.radius = sphere->at("radius").number();
+    shape.shape = made;
+    ++count;
+  }
+  if (const auto volume = place.find("volume")) {
+    volume->require_keys({"file", "array", "value"});
+    ClipVolume made;
+    made.file = volume->at("file").string();
+    if (const auto array = volume->find("array")) made.array = array->string();
+    read_number(*volume, "value", made.value);
+    shape.shape = made;
+    ++count;
+  }
+  if (count != 1) place.fail("give one of 'plane', 'box', 'sphere' and 'volume'");
+  shape.keeps_inside = read_keep(place);
+  return shape;
+}
+
+Json write_clip_shape(const ClipShape& shape) {
+  Json json;
+  if (const auto* plane = std::get_if<ClipPlane>(&shape.shape)) {
+    json["plane"]["origin"] = plane->origin;
+    json["plane"]["normal"] = plane->normal;
+  } else if (const auto* box = std::get_if<ClipBox>(&shape.shape)) {
+    for (const ValueRange& range : box->bounds) json["box"].push_back({range.min, range.max});
+  } else if (const auto* sphere = std::get_if<ClipSphere>(&shape.shape)) {
+    json["sphere"]["center"] = sphere->center;
+    json["sphere"]["radius"] = sphere->radius;
+  } else if (const auto* volume = std::get_if<ClipVolume>(&shape.shape)) {
+    json["volume"]["file"] = volume->file;
+    if (!volume->array.empty()) json["volume"]["array"] = volume->array;
+    json["volume"]["value"] = volume->value;
+  }
+  json["keep"] = shape.keeps_inside ? "inside" : "outside";
+  return json;
+}
+
+DomainAxis read_axis(const JsonPlace& place) {
+  place.require_keys({"kind", "array", "component", "range"});
+  DomainAxis axis;
+  axis.kind = read_name(place.at("kind"), kAxisKinds);
+  if (axis.kind == DomainAxis::Kind::kArray) axis.array.name = place.at("array").string();
+  if (const auto component = place.find("component")) {
+    if (component->value().is_string() && component->string() == "magnitude")
+      axis.array.component = kMagnitude;
+    else
+      axis.array.component = static_cast<int>(component->integer(0, 1'000'000));
+  }
+  if (const auto range = place.find("range")) {
+    double ends[2];
+    range->numbers(ends, 2);
+    axis.range = ValueRange{ends[0], ends[1]};
+  }
+  return axis;
+}
+
+Json write_axis(const DomainAxis& axis) {
+  Json json;
+  json["kind"] = write_name(kAxisKinds, axis.kind);
+  if (axis.kind == DomainAxis::Kind::kArray) json["array"] = axis.array.name;
+  if (axis.array.component && *axis.array.component == kMagnitude) json["component"] = "magnitude";
+  if (axis.array.component && *axis.array.component != kMagnitude) json["component"] = *axis.array.component;
+  if (axis.range) json["range"] = {axis.range->min, axis.range->max};
+  return json;
+}
+
+DomainPrimitive read_primitive(const JsonPlace& place, std::size_t axes) {
+  place.require_keys({"shape", "center", "half_size", "color", "opacity"});
+  DomainPrimitive primitive;
+  primitive.shape = read_name(place.at("shape"), kPrimitiveShapes);
+  place.at("center").numbers(primitive.center.data(), axes);
+  place.at("half_size").numbers(primitive.half_size.data(), axes);
+  if (const auto color = place.find("color")) color->numbers(primitive.color.data(), 3);
+  read_number(place, "opacity", primitive.opacity);
+  return primitive;
+}
+
+Json write_primitive(const DomainPrimitive& primitive, std::size_t axes) {
+  Json json;
+  json["shape"] = write_name(kPrimitiveShapes, primitive.shape);
+  for (std::size_t i = 0; i < axes; ++i) json["center"].push_back(primitive.center[i]);
+  for (std::size_t i = 0; i < axes; ++i) json["half_size"].push_back(primitive.half_size[i]);
+  json["color"] = primitive.color;
+  json["opacity"] = primitive.opacity;
+  return json;
+}
+
+}  // namespace
+
+Lighting read_lighting(const JsonPlace& place) {
+  place.require_keys({"lights", "material", "environment", "gradient", "gradient_threshold", "two_sided", "shadows",
+                      "shadow_resolution", "ambient_occlusion", "occlusion_seed"});
+  Lighting lighting;
+  if (const auto lights = place.find("lights"))
+    for (std::size_t i = 0; i < lights->size(); ++i) lighting.lights.push_back(read_light(lights->at(i)));
+  if (const auto material = place.find("material")) read_material(*material, lighting.material);
+  if (const auto environment = place.find("environment")) read_environment(*environment, lighting.environment);
+  if (const auto gradient = place.find("gradient"))
+    lighting.gradient = at_place(*gradient, [&] { return gradient_method_from_name(gradient->string()); });
+  read_number(place, "gradient_threshold", lighting.gradient_threshold);
+  if (const auto two_sided = place.find("two_sided")) lighting.is_two_sided = two_sided->boolean();
+  if (const auto shadows = place.find("shadows"))
+    lighting.shadows = at_place(*shadows, [&] { return shadow_kind_from_name(shadows->string()); });
+  if (const auto resolution = place.find("shadow_resolution"))
+    lighting.shadow_resolution = static_cast<int>(resolution->integer(8, 512));
+  if (const auto occlusion = place.find("ambient_occlusion"))
+    lighting.ambient_occlusion = static_cast<int>(occlusion->integer(0, 1024));
+  if (const auto seed = place.find("occlusion_seed"))
+    lighting.occlusion_seed = static_cast<std::uint64_t>(seed->integer(0, 1LL << 53));
+  at_place(place, [&] { validate_lighting(lighting); });
+  return lighting;
+}
+
+bool is_default(const Lighting& lighting) { return write_lighting(lighting) == write_lighting({}); }
+
+Json write_lighting(const Lighting& lighting) {
+  Json json;
+  json["lights"] = Json::array();
+  for (const Light& light : lighting.lights) json["lights"].push_back(write_light(light));
+  const Material& material = lighting.material;
+  json["material"] = {{"ambient", material.ambient},
+                      {"diffuse", material.diffuse},
+                      {"specular", material.specular},
+                      {"shininess", material.shininess}};
+  const Environment& environment = lighting.environment;
+  if (!environment.map.empty())
+    json["environment"] = {{"map", environment.map},
+                           {"diffuse", environment.diffuse},
+                           {"specular", environment.specular},
+                           {"roughness", environment.roughness}};
+  json["gradient"] = name_of(lighting.gradient);
+  json["gradient_threshold"] = lighting.gradient_threshold;
+  json["two_sided"] = lighting.is_two_sided;
+  json["shadows"] = name_of(lighting.shadows);
+  json["shadow_resolution"] = lighting.shadow_resolution;
+  json["ambient_occlusion"] = lighting.ambient_occlusion;
+  json["occlusion_seed"] = lighting.occlusion_seed;
+  return json;
+}
+
+std::vector<Isosurface> read_surfaces(const JsonPlace& place) {
+  std::vector<Isosurface> surfaces;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    const JsonPlace at = place.at(i);
+    at.require_keys({"value", "color", "front_color", "back_color", "opacity", "two_sided"});
+    Isosurface& surface = surfaces.emplace_back();
+    surface.value = at.at("value").number();
+    if (const auto color = at.find("color")) {
+      color->numbers(surface.front_color.data(), 3);
+      surface.back_color = surface.front_color;
+    }
+    if (const auto color = at.find("front_color")) color->numbers(surface.front_color.data(), 3);
+    if (const auto color = at.find("back_color")) color->numbers(surface.back_color.data(), 3);
+    read_number(at, "opacity", surface.opacity);
+    if (const auto two_sided = at.find("two_sided")) surface.is_two_sided = two_sided->boolean();
+  }
+  at_place(place, [&] { validate_isosurfaces(surfaces); });
+  return surfaces;
+}
+
+Json write_surfaces(const std::vector<Isosurface>& surfaces) {
+  Json json = Json::array();
+  for (const Isosurface& surface : surfaces)
+    json.push_back({{"value", surface.value},
+                    {"front_color", surface.front_color},
+                    {"back_color", surface.back_color},
+                    {"opacity", surface.opacity},
+                    {"two_sided", surface.is_two_sided}});
+  return json;
+}
+
+Clipping read_clipping(const JsonPlace& place) {
+  place.require_keys({"combine", "shapes"});
+  Clipping clipping;
+  if (const auto combine = place.find("combine")) {
+    if (combine->string() != "intersection" && combine->string() != "union")
+      combine->fail("expected \"intersection\" or \"union\"");
+    clipping.use_union = combine->string() == "union";
+  }
+  const JsonPlace shapes = place.at("shapes");
+  for (std::size_t i = 0; i < shapes.size(); ++i) clipping.shapes.push_back(read_clip_shape(shapes.at(i)));
+  at_place(place, [&] { validate_clipping(clipping); });
+  return clipping;
+}
+
+Json write_clipping(const Clipping& clipping) {
+  Json json;
+  json["combine"] = clipping.use_union ? "union" : "intersection";
+  json["shapes"] = Json::array();
+  for (const ClipShape& shape : clipping.shapes) json["shapes"].push_back(write_clip_shape(shape));
+  return json;
+}
+
+DomainFunction read_domain_function(const JsonPlace& place) {
+  place.require_keys({"axes", "samples", "primitives", "table", "colors", "opacities", "unit_distance"});
+  DomainFunction function;
+  const JsonPlace axes = place.at("axes");
+  if (axes.size() < 2 || axes.size() > 3) axes.fail("expected two or three axes");
+  for (std::size_t i = 0; i < axes.size(); ++i) function.axes.push_back(read_axis(axes.at(i)));
+  if (const auto samples = place.find("samples")) function.samples = static_cast<int>(samples->integer(16, 1024));
+  if (const auto primitives = place.find("primitives"))
+    for (std::size_t i = 0; i < primitives->size(); ++i)
+      function.primitives.push_back(read_primitive(primitives->at(i), function.axes.size()));
+  if (const auto table = place.find("table")) function.table = table->string();
+  if (const auto colors = place.find("colors")) function.colors = optics::read_scene_function(*colors);
+  if (const auto opacities = place.find("opacities")) function.opacities = optics::read_scene_function(*opacities);
+  if (const auto distance = place.find("unit_distance")) function.unit_distance = distance->number();
+  at_place(place, [&] { validate_domain_function(function); });
+  return function;
+}
+
+Json write_domain_function(const DomainFunction& function) {
+  Json json;
+  json["axes"] = Json::array();
+  for (const DomainAxis& axis : function.axes) json["axes"].push_back(write_axis(axis));
+  json["samples"] = function.samples;
+  for (const DomainPrimitive& primitive : function.primitives)
+    json["primitives"].push_back(write_primitive(primitive, function.axes.size()));
+  if (!function.table.empty()) json["table"] = function.table;
+  if (function.colors) json["colors"] = optics::write_scene_function(*function.colors);
+  if (function.opacities) json["opacities"] = optics::write_scene_function(*function.opacities);
+  if (function.unit_distance) json["unit_distance"] = *function.unit_distance;
+  return json;
+}
+
+}  // namespace tetravox::scene
