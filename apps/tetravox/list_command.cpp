@@ -60,6 +60,9 @@ void run_list(const ListOptions& options) {
                 << with_title("Classifications (--classification):", classification_names())
                 << with_title("Integrators (--integrator):", integrator_names())
                 << with_title("Filters of grids (--filter):", filter_names())
+                << with_title("Gradients (--gradient):", gradient_method_names())
+                << with_title("Shadows (--shadows):", shadow_kind_names())
+                << with_title("Opacity weights (--opacity-weight):", opacity_weight_names())
                 << with_title("Instruction sets (--instruction-set):", instruction_set_rows());
       break;
   }

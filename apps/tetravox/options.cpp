@@ -1,6 +1,8 @@
 #include "apps/tetravox/options.h"
 
 #include "apps/tetravox/method_choice.h"
+#include "apps/tetravox/option_adding.h"
+#include "apps/tetravox/options_effects.h"
 #include "apps/tetravox/options_histogram.h"
 #include "apps/tetravox/text.h"
 
@@ -33,6 +35,8 @@ constexpr char kExamples[] = R"(Examples:
   tetravox render builtin:buckyball -o ball.png     an embedded dataset
   tetravox render head.nii.gz                       a regular grid, as easily
   tetravox render engine.vtu -o engine.exr --array pressure --transfer-function viridis:ramp --range -0.5,1
+  tetravox render engine.vtu --shade                lit by a headlight; --lights, --shadows and --environment say more
+  tetravox render engine.vtu --isosurface 0.3 --clip-plane 0,0,0,1,0,0
   tetravox render scene.json --resolution 1920,1080 the scene in a file, larger
   tetravox render engine.png -o again.png           the scene that a picture holds
   tetravox info engine.vtu                          cells, arrays, bounds, memory
@@ -54,52 +58,6 @@ constexpr char kRenderExamples[] = R"(Examples:
 constexpr char kInputHelp[] =
     "Mesh or grid file, builtin:NAME, scene (.json), picture with a scene (.png, .exr), or a directory (a case, DICOM "
     "or TIFF slices)";
-
-using Setter = std::function<void(const std::string& option, const std::string& text)>;
-
-/// Adds an option whose text goes through one of our own strict parsers.
-void add(CLI::App& app, const std::string& names, const std::string& type, const std::string& help, Setter set) {
-  const std::string shown = names.substr(names.find("--"));
-  app.add_option_function<std::string>(
-         names, [shown, set = std::move(set)](const std::string& text) { set(shown, text); }, help)
-      ->type_name(type);
-}
-
-/// A setter that stores what `parse` makes of the text.
-template <class T, class Parse>
-Setter store(T& target, Parse parse) {
-  return [&target, parse](const std::string& option, const std::string& text) { target = parse(option, text); };
-}
-
-Setter store_text(std::string& target) {
-  return [&target](const std::string& option, const std::string& text) {
-    if (text.empty()) throw UsageError(option + ": the text is empty");
-    target = text;
-  };
-}
-
-/// A parser of whole numbers in a range.
-auto integer(std::int64_t smallest, std::int64_t largest) {
-  return [=](const std::string& option, const std::string& text) {
-    return static_cast<int>(parse_integer(option, text, smallest, largest));
-  };
-}
-
-/// A parser of names that the library knows; its error becomes a usage error.
-template <class FromName>
-auto named(FromName from_name) {
-  return [=](const std::string& option, const std::string& text) {
-    try {
-      return from_name(text);
-    } catch (const Error& error) {
-      throw UsageError(option + ": " + error.what());
-    }
-  };
-}
-
-bool parse_switch(const std::string& option, const std::string& text) {
-  return parse_choice(option, text, {"on", "off"}) == 0;
-}
 
 void add_input(CLI::App& app, InputOptions& input) {
   app.add_option("INPUT", input.input, kInputHelp)->type_name("");
@@ -179,6 +137,8 @@ void add_picture(CLI::App& app, RenderOptions& options) {
       [&options](const std::string& option, const std::string& text) {
         options.bit_depth = parse_choice(option, text, {"8", "16"}) == 0 ? 8 : 16;
       });
+  add(app, "--output-depth", "FILE", "Write the depth of what is seen first: .exr (channel Z) or .npy",
+      store_text(options.output_depth));
   add(app, "--save-scene", "FILE", "Write everything that the picture depends on as a scene file",
       store_text(options.save_scene));
   add(app, "--statistics", "FILE", "Write times, memory and counts as JSON", store_text(options.statistics));
@@ -292,6 +252,8 @@ Parser::Parser() {
   add_camera(*render, render_options.camera);
   add_picture(*render, render_options);
   add_method(*render, render_options);
+  add_light(*render, render_options.effects);
+  add_shapes(*render, render_options.effects);
   render->footer(kRenderExamples);
 
   info = add_command(app, "info", "Tell what a file holds and what drawing it needs");

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace tetravox::tool {
 
@@ -65,11 +66,42 @@ struct MethodOptions {
   std::string instruction_set;
 };
 
+/// An iso-surface; its colour is the transfer function's where none is given.
+struct SurfaceOption {
+  double value = 0.0;
+  std::optional<Color> color;
+  double opacity = 1.0;
+};
+
+/// Light, surfaces and clipping: put over those of the scene.
+struct EffectOptions {
+  bool use_headlight = false;
+  std::optional<std::vector<Light>> lights;  ///< empty: none
+  std::optional<Material> material;
+  std::optional<GradientMethod> gradient;
+  std::optional<double> gradient_threshold;
+  std::optional<bool> is_two_sided;
+  std::optional<ShadowKind> shadows;
+  std::optional<int> shadow_resolution, ambient_occlusion;
+  std::vector<SurfaceOption> surfaces;
+  std::optional<Color> surface_back_color;
+  bool are_surfaces_one_sided = false;
+  std::optional<bool> shows_volume;
+  std::vector<ClipShape> clip_shapes;
+  std::optional<bool> use_union;
+  std::optional<OpacityWeight> weight;
+  std::optional<double> weight_scale;
+
+  bool wants_light() const;
+};
+
 struct RenderOptions {
   InputOptions input;
   FunctionOptions function;
   CameraOptions camera;
   MethodOptions method;
+  EffectOptions effects;
+  std::string output_depth;
   std::string output;  ///< empty: the input's name with ".png" in the current directory
   std::optional<std::array<int, 2>> resolution;
   std::optional<Color> background;

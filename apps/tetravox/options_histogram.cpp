@@ -1,12 +1,8 @@
 #include "apps/tetravox/options_histogram.h"
 
-#include "apps/tetravox/option_values.h"
+#include "apps/tetravox/option_adding.h"
 
-#include <CLI/CLI.hpp>
-
-#include <functional>
 #include <string>
-#include <utility>
 
 namespace tetravox::tool {
 namespace {
@@ -20,15 +16,6 @@ constexpr char kHistogramExamples[] = R"(Examples:
   tetravox histogram head.nii.gz --kind gradient    materials are spots at the bottom, boundaries are arches
   tetravox histogram engine.vtu -o engine.csv --bins 100 --range -0.5,1
 )";
-
-/// Adds an option whose text one of our own strict parsers takes.
-void add(CLI::App& app, const std::string& names, const std::string& type, const std::string& help,
-         std::function<void(const std::string& option, const std::string& text)> set) {
-  const std::string shown = names.substr(names.find("--"));
-  app.add_option_function<std::string>(
-         names, [shown, set = std::move(set)](const std::string& text) { set(shown, text); }, help)
-      ->type_name(type);
-}
 
 }  // namespace
 

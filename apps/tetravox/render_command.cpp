@@ -1,5 +1,6 @@
 #include "apps/tetravox/body.h"
 #include "apps/tetravox/commands.h"
+#include "apps/tetravox/effect_choice.h"
 #include "apps/tetravox/empty_picture.h"
 #include "apps/tetravox/function_choice.h"
 #include "apps/tetravox/json_report.h"
@@ -64,6 +65,7 @@ struct Job {
   DatasetInfo info;
   Body body;
   CompletedScene completed;
+  SceneParts parts;
   PictureStatistics statistics;
 };
 
@@ -78,7 +80,10 @@ std::string choose_output(const RenderOptions& options, const SceneInput& input)
   std::error_code ignored;
   if (options.output.empty() && std::filesystem::equivalent(output, options.input.input, ignored))
     throw UsageError("--output: name the picture, the default would replace the input " + output);
-  const std::array<std::string, 3> written{output, options.save_scene, options.statistics};
+  if (!options.output_depth.empty() && ending_of(options.output_depth) != ".exr" &&
+      ending_of(options.output_depth) != ".npy")
+    throw UsageError("--output-depth: '" + options.output_depth + "' does not end in .exr or .npy");
+  const std::array<std::string, 4> written{output, options.save_scene, options.statistics, options.output_depth};
   for (std::size_t i = 0; i < written.size(); ++i) {
     if (written[i].empty()) continue;
     require_writable(written[i]);
@@ -100,6 +105,8 @@ void override_scene(const RenderOptions& options, Scene& scene) {
   }
   scene.background = options.background.value_or(scene.background);
   override_method(options.method, settings);
+  override_effects(options.effects, scene);
+  settings.wants_depth = !options.output_depth.empty();
 }
 
 Camera override_camera(const CameraOptions& options, Camera camera) {
@@ -164,6 +171,7 @@ void complete_job(const RenderOptions& options, Job& job) {
   choose_function(options.function, job.body, scene);
   job.completed = complete_scene(scene, job.body);
   job.completed.camera = override_camera(options.camera, job.completed.camera);
+  complete_effects(options.effects, job.completed, scene);
   scene.transfer_function = job.completed.transfer_function;
   scene.camera = job.completed.camera;
   job.statistics.choose_seconds = watch.lap();
@@ -171,6 +179,7 @@ void complete_job(const RenderOptions& options, Job& job) {
 
 Image draw(const RenderOptions& options, Job& job, Talk& talk) {
   Renderer renderer = make_renderer(job.body);
+  job.parts.attach(renderer);
   Stopwatch watch;
   renderer.set_transfer_function(job.completed.optical_function);
   job.statistics.transfer_function_seconds = watch.lap();
@@ -196,9 +205,7 @@ Image draw(const RenderOptions& options, Job& job, Talk& talk) {
 
 /// The scene's text for a file at `target`.
 std::string scene_text(const Job& job, const std::string& target) {
-  Scene scene = job.input.scene;
-  scene.data = data_seen_from(job.input, target);
-  return format_scene(scene);
+  return format_scene(scene_seen_from(job.input, target));
 }
 
 WriteOptions choose_write_options(const RenderOptions& options, const Job& job) {
@@ -230,6 +237,8 @@ void write_everything(const RenderOptions& options, Job& job, const Image& image
   files.write(job.output, [&](const std::string& path) {
     write_image(path, image, choose_write_options(options, job), talk.line.progress());
   });
+  if (!options.output_depth.empty())
+    files.write(options.output_depth, [&](const std::string& path) { write_depth(path, image); });
   job.statistics.write_seconds = write_watch.lap();
   if (!options.save_scene.empty())
     files.write(options.save_scene, [&](const std::string& path) { write_text_file(path, scene_text(job, path)); });
@@ -249,6 +258,7 @@ void run_render(const RenderOptions& options) {
   job.input = load_scene_input(options.input);
   job.output = choose_output(options, job.input);
   override_scene(options, job.input.scene);
+  job.parts.load(job.input.scene, talk.line.progress());
   load_body(options, job, talk);
   complete_job(options, job);
   const Image image = draw(options, job, talk);

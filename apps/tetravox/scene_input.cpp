@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <variant>
 
 namespace tetravox::tool {
 namespace {
@@ -84,6 +85,13 @@ std::string seen_from(const fs::path& directory, const std::string& path) {
   return shared > 1 ? to.lexically_relative(from).string() : to.string();
 }
 
+/// Puts what `replace` makes of them in the place of the paths that a scene names beside its data.
+template <class Replace>
+void replace_paths(Scene& scene, const Replace& replace) {
+  for (ClipShape& shape : scene.settings.clipping.shapes)
+    if (auto* volume = std::get_if<ClipVolume>(&shape.shape)) volume->file = replace(volume->file);
+}
+
 }  // namespace
 
 SceneInput load_scene_input(const InputOptions& options) {
@@ -106,6 +114,7 @@ SceneInput load_scene_input(const InputOptions& options) {
   SceneData& data = input.scene.data;
   const bool is_scene = holds_scene && (ending_of(path) == ".json" || is_picture(path));
   input.data_path = is_scene ? resolve(path, data.file) : path;
+  if (is_scene) replace_paths(input.scene, [&](const std::string& file) { return resolve(path, file); });
   override_data(options, data);
 
   // PLOT3D comes as two files; the grid is the one that is opened.
@@ -123,12 +132,13 @@ SceneInput load_scene_input(const InputOptions& options) {
   return input;
 }
 
-SceneData data_seen_from(const SceneInput& input, const std::string& target) {
+Scene scene_seen_from(const SceneInput& input, const std::string& target) {
   const fs::path directory = fs::absolute(target).parent_path();
-  SceneData data = input.scene.data;
-  data.file = seen_from(directory, input.data_path);
-  data.solution_file = seen_from(directory, input.read.grid_file);
-  return data;
+  Scene scene = input.scene;
+  scene.data.file = seen_from(directory, input.data_path);
+  scene.data.solution_file = seen_from(directory, input.read.grid_file);
+  replace_paths(scene, [&](const std::string& path) { return seen_from(directory, path); });
+  return scene;
 }
 
 }  // namespace tetravox::tool

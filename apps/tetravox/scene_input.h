@@ -24,8 +24,8 @@ struct SceneInput {
 /// @throws Error for files that cannot be read; UsageError for options that contradict each other.
 SceneInput load_scene_input(const InputOptions& options);
 
-/// `scene.data` as a file in the directory of `target` must say it: paths relative to that directory where the two
-/// share a directory below the root, so that a folder can be moved; absolute otherwise.
-SceneData data_seen_from(const SceneInput& input, const std::string& target);
+/// The scene as a file in the directory of `target` must say it: paths relative to that directory where the two share a
+/// directory below the root, so that a folder can be moved; absolute otherwise.
+Scene scene_seen_from(const SceneInput& input, const std::string& target);
 
 }  // namespace tetravox::tool

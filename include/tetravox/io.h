@@ -51,6 +51,11 @@ struct WriteOptions {
 void write_image(const std::string& path, const Image& image, const WriteOptions& options = {},
                  const Progress& progress = {});
 
+/// Writes `Image::depth` in the same way: .exr (one float channel Z) or .npy (float32 [height][width]). Infinite where
+/// nothing is met.
+/// @throws Error: kCannotWrite, kInvalidArgument for another ending or a picture without depth.
+void write_depth(const std::string& path, const Image& image);
+
 /// The endings that `write_image` knows, with a remark.
 std::vector<std::pair<std::string, std::string>> image_writer_names();
 

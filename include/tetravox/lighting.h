@@ -87,6 +87,9 @@ std::string name_of(LightKind kind);  ///< "headlight", "directional", "point"
 LightKind light_kind_from_name(const std::string& name);
 std::string name_of(ShadowKind kind);  ///< "none", "volume", "rays"
 ShadowKind shadow_kind_from_name(const std::string& name);
+/// Names, one-line descriptions.
+std::vector<std::pair<std::string, std::string>> gradient_method_names();
+std::vector<std::pair<std::string, std::string>> shadow_kind_names();
 
 /// @throws Error (kInvalidArgument) that names the member.
 void validate_lighting(const Lighting& lighting);

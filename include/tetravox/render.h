@@ -93,6 +93,7 @@ OpacityWeight opacity_weight_from_name(const std::string& name);
 /// Names, one-line descriptions with the paper.
 std::vector<std::pair<std::string, std::string>> source_names();
 std::vector<std::pair<std::string, std::string>> integrator_names();
+std::vector<std::pair<std::string, std::string>> opacity_weight_names();
 
 /// The instruction sets compiled in and supported by this machine, best first.
 std::vector<std::string> instruction_sets();

@@ -19,6 +19,7 @@
 #include <exception>
 #include <fstream>
 #include <optional>
+#include <vector>
 
 namespace tetravox::io {
 namespace {
@@ -41,29 +42,50 @@ class ExrStream final : public Imf::OStream {
   OutputFile& file_;
 };
 
-Imf::Header make_header(const Image& image, const std::string& scene) {
+/// Interleaved float channels of a picture.
+struct Channels {
+  std::vector<const char*> names;
+  const float* values = nullptr;  ///< [height][width][names]
+};
+
+Imf::Header make_header(const Image& image, const Channels& channels, const std::string& scene) {
   Imf::Header header(image.width, image.height, 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
-  for (const char* channel : {"R", "G", "B", "A"}) header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+  for (const char* name : channels.names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   header.zipCompressionLevel() = kCompressionLevel;
   header.insert("software", Imf::StringAttribute("tetravox"));
   if (!scene.empty()) header.insert(kSceneAttribute, Imf::StringAttribute(scene));
   return header;
 }
 
-void write_rows(ExrStream& stream, const Image& image, const std::string& scene, const Progress& progress) {
-  Imf::OutputFile output(stream, make_header(image, scene), 0);
+void write_rows(ExrStream& stream, const Image& image, const Channels& channels, const std::string& scene,
+                const Progress& progress) {
+  Imf::OutputFile output(stream, make_header(image, channels, scene), 0);
   Imf::FrameBuffer frame;
-  const std::size_t pixel = 4 * sizeof(float);
+  const std::size_t pixel = channels.names.size() * sizeof(float);
   const std::size_t row = pixel * static_cast<std::size_t>(image.width);
-  const char* channels[] = {"R", "G", "B", "A"};
-  for (std::size_t c = 0; c < 4; ++c) {
-    char* base = reinterpret_cast<char*>(const_cast<float*>(image.pixels.data() + c));  // read only
-    frame.insert(channels[c], Imf::Slice(Imf::FLOAT, base, pixel, row));
+  for (std::size_t c = 0; c < channels.names.size(); ++c) {
+    char* base = reinterpret_cast<char*>(const_cast<float*>(channels.values + c));  // read only
+    frame.insert(channels.names[c], Imf::Slice(Imf::FLOAT, base, pixel, row));
   }
   output.setFrameBuffer(frame);
   for (int y = 0; y < image.height; y += 16) {
     support::throw_if_cancelled(progress);
     output.writePixels(std::min(16, image.height - y));
+  }
+}
+
+/// Translates what OpenEXR throws.
+void write_channels(OutputFile& file, const Image& image, const Channels& channels, const std::string& scene,
+                    const Progress& progress) {
+  try {
+    ExrStream stream(file);
+    write_rows(stream, image, channels, scene, progress);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    // OpenEXR wraps what our stream throws in exceptions of its own.
+    if (file.has_failed()) file.fail();
+    throw Error(ErrorCode::kCannotWrite, std::string("cannot write an EXR: ") + error.what());
   }
 }
 
@@ -87,16 +109,11 @@ std::optional<std::uint32_t> read_word(std::istream& file) {
 }  // namespace
 
 void write_exr(OutputFile& file, const Image& image, const WriteOptions& options, const Progress& progress) {
-  try {
-    ExrStream stream(file);
-    write_rows(stream, image, options.scene, progress);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    // OpenEXR wraps what our stream throws in exceptions of its own.
-    if (file.has_failed()) file.fail();
-    throw Error(ErrorCode::kCannotWrite, std::string("cannot write an EXR: ") + error.what());
-  }
+  write_channels(file, image, {{"R", "G", "B", "A"}, image.pixels.data()}, options.scene, progress);
+}
+
+void write_depth_exr(OutputFile& file, const Image& image) {
+  write_channels(file, image, {{"Z"}, image.depth.data()}, "", {});
 }
 
 std::string read_exr_scene(const std::string& path) {

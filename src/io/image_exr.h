@@ -15,6 +15,9 @@ namespace tetravox::io {
 /// Writes the picture, row 0 at the top (increasing y), without loss. @throws Error: kCannotWrite, kCancelled.
 void write_exr(OutputFile& file, const Image& image, const WriteOptions& options, const Progress& progress);
 
+/// Writes `Image::depth` as the channel Z. @throws Error (kCannotWrite).
+void write_depth_exr(OutputFile& file, const Image& image);
+
 /// The scene in an EXR's first header, empty where there is none. Reads the header only, by a parser of its own that
 /// believes no length in the file.
 /// @throws Error: kFileNotFound, kBadFile.

@@ -58,6 +58,18 @@ void write_image(const std::string& path, const Image& image, const WriteOptions
   file.commit();
 }
 
+void write_depth(const std::string& path, const Image& image) {
+  if (image.depth.empty() || image.depth.size() != static_cast<std::size_t>(image.width) * image.height)
+    throw Error(ErrorCode::kInvalidArgument, "this picture has no depth: ask for it before drawing");
+  const std::string ending = ending_of(path);
+  if (ending != ".exr" && ending != ".npy")
+    throw Error(ErrorCode::kInvalidArgument, "cannot write '" + path + "': depths end in .exr or .npy");
+  io::OutputFile file(path);
+  if (ending == ".exr") io::write_depth_exr(file, image);
+  if (ending == ".npy") io::write_depth_npy(file, image);
+  file.commit();
+}
+
 WriteOptions read_image_options(const std::string& path) {
   const std::string ending = ending_of(path);
   if (ending == ".png") return io::read_png_options(path);

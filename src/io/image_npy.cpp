@@ -36,4 +36,9 @@ void write_npy(OutputFile& file, const Image& image, const Progress& progress) {
   }
 }
 
+void write_depth_npy(OutputFile& file, const Image& image) {
+  write_npy_header(file, "<f4", {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width)});
+  file.write(image.depth.data(), image.depth.size() * sizeof(float));
+}
+
 }  // namespace tetravox::io

@@ -19,4 +19,7 @@ void write_npy_header(OutputFile& file, const std::string& type, const std::vect
 /// Writes the picture's floats as they are, row 0 first. @throws Error: kCannotWrite, kCancelled.
 void write_npy(OutputFile& file, const Image& image, const Progress& progress);
 
+/// Writes `Image::depth` as float32 [height][width]. @throws Error (kCannotWrite).
+void write_depth_npy(OutputFile& file, const Image& image);
+
 }  // namespace tetravox::io

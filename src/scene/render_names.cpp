@@ -103,5 +103,8 @@ ShadowKind shadow_kind_from_name(const std::string& name) {
 }
 std::vector<std::pair<std::string, std::string>> source_names() { return list_names(kSources); }
 std::vector<std::pair<std::string, std::string>> integrator_names() { return list_names(kIntegrators); }
+std::vector<std::pair<std::string, std::string>> opacity_weight_names() { return list_names(kOpacityWeights); }
+std::vector<std::pair<std::string, std::string>> gradient_method_names() { return list_names(kGradientMethods); }
+std::vector<std::pair<std::string, std::string>> shadow_kind_names() { return list_names(kShadowKinds); }
 
 }  // namespace tetravox

@@ -1,44 +1,17 @@
 #include "src/scene/scene_effects.h"
 
-#include "src/optics/transfer_function_json.h"
 #include "tetravox/error.h"
 
-#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
-#include <utility>
+#include <variant>
 
 namespace tetravox::scene {
 namespace {
 
 using optics::JsonPlace;
 using Json = nlohmann::ordered_json;
-
-constexpr std::array<std::pair<DomainAxis::Kind, const char*>, 3> kAxisKinds{
-    {{DomainAxis::Kind::kValue, "value"},
-     {DomainAxis::Kind::kGradientMagnitude, "gradient-magnitude"},
-     {DomainAxis::Kind::kArray, "array"}}};
-constexpr std::array<std::pair<DomainPrimitive::Shape, const char*>, 3> kPrimitiveShapes{
-    {{DomainPrimitive::Shape::kRectangle, "rectangle"},
-     {DomainPrimitive::Shape::kTriangle, "triangle"},
-     {DomainPrimitive::Shape::kGaussian, "gaussian"}}};
-
-template <class Names>
-auto read_name(const JsonPlace& place, const Names& names) {
-  std::string known;
-  for (const auto& [value, name] : names) {
-    if (place.string() == name) return value;
-    known += (known.empty() ? "" : ", ") + std::string(name);
-  }
-  place.fail("expected one of: " + known);
-}
-
-template <class Names, class Value>
-std::string write_name(const Names& names, Value wanted) {
-  for (const auto& [value, name] : names)
-    if (value == wanted) return name;
-  return {};
-}
 
 /// Calls `action`; what it throws is told as an error of the file, at `place`.
 template <class Action>
@@ -83,14 +56,6 @@ void read_material(const JsonPlace& place, Material& material) {
   read_number(place, "diffuse", material.diffuse);
   read_number(place, "specular", material.specular);
   read_number(place, "shininess", material.shininess);
-}
-
-void read_environment(const JsonPlace& place, Environment& environment) {
-  place.require_keys({"map", "diffuse", "specular", "roughness"});
-  environment.map = place.at("map").string();
-  read_number(place, "diffuse", environment.diffuse);
-  read_number(place, "specular", environment.specular);
-  read_number(place, "roughness", environment.roughness);
 }
 
 bool read_keep(const JsonPlace& place) {
@@ -164,66 +129,15 @@ Json write_clip_shape(const ClipShape& shape) {
   return json;
 }
 
-DomainAxis read_axis(const JsonPlace& place) {
-  place.require_keys({"kind", "array", "component", "range"});
-  DomainAxis axis;
-  axis.kind = read_name(place.at("kind"), kAxisKinds);
-  if (axis.kind == DomainAxis::Kind::kArray) axis.array.name = place.at("array").string();
-  if (const auto component = place.find("component")) {
-    if (component->value().is_string() && component->string() == "magnitude")
-      axis.array.component = kMagnitude;
-    else
-      axis.array.component = static_cast<int>(component->integer(0, 1'000'000));
-  }
-  if (const auto range = place.find("range")) {
-    double ends[2];
-    range->numbers(ends, 2);
-    axis.range = ValueRange{ends[0], ends[1]};
-  }
-  return axis;
-}
-
-Json write_axis(const DomainAxis& axis) {
-  Json json;
-  json["kind"] = write_name(kAxisKinds, axis.kind);
-  if (axis.kind == DomainAxis::Kind::kArray) json["array"] = axis.array.name;
-  if (axis.array.component && *axis.array.component == kMagnitude) json["component"] = "magnitude";
-  if (axis.array.component && *axis.array.component != kMagnitude) json["component"] = *axis.array.component;
-  if (axis.range) json["range"] = {axis.range->min, axis.range->max};
-  return json;
-}
-
-DomainPrimitive read_primitive(const JsonPlace& place, std::size_t axes) {
-  place.require_keys({"shape", "center", "half_size", "color", "opacity"});
-  DomainPrimitive primitive;
-  primitive.shape = read_name(place.at("shape"), kPrimitiveShapes);
-  place.at("center").numbers(primitive.center.data(), axes);
-  place.at("half_size").numbers(primitive.half_size.data(), axes);
-  if (const auto color = place.find("color")) color->numbers(primitive.color.data(), 3);
-  read_number(place, "opacity", primitive.opacity);
-  return primitive;
-}
-
-Json write_primitive(const DomainPrimitive& primitive, std::size_t axes) {
-  Json json;
-  json["shape"] = write_name(kPrimitiveShapes, primitive.shape);
-  for (std::size_t i = 0; i < axes; ++i) json["center"].push_back(primitive.center[i]);
-  for (std::size_t i = 0; i < axes; ++i) json["half_size"].push_back(primitive.half_size[i]);
-  json["color"] = primitive.color;
-  json["opacity"] = primitive.opacity;
-  return json;
-}
-
 }  // namespace
 
 Lighting read_lighting(const JsonPlace& place) {
-  place.require_keys({"lights", "material", "environment", "gradient", "gradient_threshold", "two_sided", "shadows",
+  place.require_keys({"lights", "material", "gradient", "gradient_threshold", "two_sided", "shadows",
                       "shadow_resolution", "ambient_occlusion", "occlusion_seed"});
   Lighting lighting;
   if (const auto lights = place.find("lights"))
     for (std::size_t i = 0; i < lights->size(); ++i) lighting.lights.push_back(read_light(lights->at(i)));
   if (const auto material = place.find("material")) read_material(*material, lighting.material);
-  if (const auto environment = place.find("environment")) read_environment(*environment, lighting.environment);
   if (const auto gradient = place.find("gradient"))
     lighting.gradient = at_place(*gradient, [&] { return gradient_method_from_name(gradient->string()); });
   read_number(place, "gradient_threshold", lighting.gradient_threshold);
@@ -251,12 +165,6 @@ Json write_lighting(const Lighting& lighting) {
                       {"diffuse", material.diffuse},
                       {"specular", material.specular},
                       {"shininess", material.shininess}};
-  const Environment& environment = lighting.environment;
-  if (!environment.map.empty())
-    json["environment"] = {{"map", environment.map},
-                           {"diffuse", environment.diffuse},
-                           {"specular", environment.specular},
-                           {"roughness", environment.roughness}};
   json["gradient"] = name_of(lighting.gradient);
   json["gradient_threshold"] = lighting.gradient_threshold;
   json["two_sided"] = lighting.is_two_sided;
@@ -317,38 +225,6 @@ Json write_clipping(const Clipping& clipping) {
   json["combine"] = clipping.use_union ? "union" : "intersection";
   json["shapes"] = Json::array();
   for (const ClipShape& shape : clipping.shapes) json["shapes"].push_back(write_clip_shape(shape));
-  return json;
-}
-
-DomainFunction read_domain_function(const JsonPlace& place) {
-  place.require_keys({"axes", "samples", "primitives", "table", "colors", "opacities", "unit_distance"});
-  DomainFunction function;
-  const JsonPlace axes = place.at("axes");
-  if (axes.size() < 2 || axes.size() > 3) axes.fail("expected two or three axes");
-  for (std::size_t i = 0; i < axes.size(); ++i) function.axes.push_back(read_axis(axes.at(i)));
-  if (const auto samples = place.find("samples")) function.samples = static_cast<int>(samples->integer(16, 1024));
-  if (const auto primitives = place.find("primitives"))
-    for (std::size_t i = 0; i < primitives->size(); ++i)
-      function.primitives.push_back(read_primitive(primitives->at(i), function.axes.size()));
-  if (const auto table = place.find("table")) function.table = table->string();
-  if (const auto colors = place.find("colors")) function.colors = optics::read_scene_function(*colors);
-  if (const auto opacities = place.find("opacities")) function.opacities = optics::read_scene_function(*opacities);
-  if (const auto distance = place.find("unit_distance")) function.unit_distance = distance->number();
-  at_place(place, [&] { validate_domain_function(function); });
-  return function;
-}
-
-Json write_domain_function(const DomainFunction& function) {
-  Json json;
-  json["axes"] = Json::array();
-  for (const DomainAxis& axis : function.axes) json["axes"].push_back(write_axis(axis));
-  json["samples"] = function.samples;
-  for (const DomainPrimitive& primitive : function.primitives)
-    json["primitives"].push_back(write_primitive(primitive, function.axes.size()));
-  if (!function.table.empty()) json["table"] = function.table;
-  if (function.colors) json["colors"] = optics::write_scene_function(*function.colors);
-  if (function.opacities) json["opacities"] = optics::write_scene_function(*function.opacities);
-  if (function.unit_distance) json["unit_distance"] = *function.unit_distance;
   return json;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Light, iso-surfaces, clipping and functions of several variables in scene files.
+/// Light, iso-surfaces and clipping in scene files.
 ///
 /// Include it only where a scene file is parsed: nlohmann's JSON compiles slowly.
 
@@ -13,13 +13,11 @@ namespace tetravox::scene {
 Lighting read_lighting(const optics::JsonPlace& place);
 std::vector<Isosurface> read_surfaces(const optics::JsonPlace& place);
 Clipping read_clipping(const optics::JsonPlace& place);
-DomainFunction read_domain_function(const optics::JsonPlace& place);
 
 /// What these read back to equal values.
 nlohmann::ordered_json write_lighting(const Lighting& lighting);
 nlohmann::ordered_json write_surfaces(const std::vector<Isosurface>& surfaces);
 nlohmann::ordered_json write_clipping(const Clipping& clipping);
-nlohmann::ordered_json write_domain_function(const DomainFunction& function);
 
 /// Whether a lighting says anything but the default.
 bool is_default(const Lighting& lighting);

@@ -234,14 +234,12 @@ Scene parse_scene(const std::string& text, const std::string& source_name) {
   const nlohmann::json json = optics::parse_json(text, source_name);
   const JsonPlace root(json, source_name);
   require_version(root);
-  root.require_keys({"tetravox", "data", "transfer_function", "domain_function", "surfaces", "clipping", "lighting",
-                     "camera", "image", "render"});
+  root.require_keys(
+      {"tetravox", "data", "transfer_function", "surfaces", "clipping", "lighting", "camera", "image", "render"});
   Scene scene;
   scene.data = read_data(root.at("data"));
   if (const auto function = root.find("transfer_function"))
     scene.transfer_function = optics::read_scene_function(*function);
-  if (const auto function = root.find("domain_function"))
-    scene.domain_function = scene::read_domain_function(*function);
   if (const auto surfaces = root.find("surfaces")) scene.settings.surfaces = scene::read_surfaces(*surfaces);
   if (const auto clipping = root.find("clipping")) scene.settings.clipping = scene::read_clipping(*clipping);
   if (const auto lighting = root.find("lighting")) scene.settings.lighting = scene::read_lighting(*lighting);
@@ -256,7 +254,6 @@ std::string format_scene(const Scene& scene) {
   json["tetravox"] = kSceneVersion;
   json["data"] = write_data(scene.data);
   if (scene.transfer_function) json["transfer_function"] = optics::write_scene_function(*scene.transfer_function);
-  if (scene.domain_function) json["domain_function"] = scene::write_domain_function(*scene.domain_function);
   const RenderSettings& settings = scene.settings;
   if (!settings.surfaces.empty()) json["surfaces"] = scene::write_surfaces(settings.surfaces);
   if (!settings.clipping.shapes.empty()) json["clipping"] = scene::write_clipping(settings.clipping);

@@ -69,8 +69,7 @@ void validate(const ClipVolume& volume, const std::string& name) {
 }  // namespace
 
 void validate_lighting(const Lighting& lighting) {
-  for (std::size_t i = 0; i < lighting.lights.size(); ++i)
-    validate(lighting.lights[i], "light " + std::to_string(i));
+  for (std::size_t i = 0; i < lighting.lights.size(); ++i) validate(lighting.lights[i], "light " + std::to_string(i));
   const Material& material = lighting.material;
   require_number("material, ambient", material.ambient, 0.0, 1.0);
   require_number("material, diffuse", material.diffuse, 0.0, 1.0);

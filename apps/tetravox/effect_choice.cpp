@@ -1,0 +1,82 @@
+#include "apps/tetravox/effect_choice.h"
+
+#include "tetravox/error.h"
+#include "tetravox/grid.h"
+#include "tetravox/io.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace tetravox::tool {
+namespace {
+
+void override_lighting(const EffectOptions& options, Lighting& lighting) {
+  if (options.lights) lighting.lights = *options.lights;
+  lighting.material = options.material.value_or(lighting.material);
+  lighting.gradient = options.gradient.value_or(lighting.gradient);
+  lighting.gradient_threshold = options.gradient_threshold.value_or(lighting.gradient_threshold);
+  lighting.is_two_sided = options.is_two_sided.value_or(lighting.is_two_sided);
+  lighting.shadows = options.shadows.value_or(lighting.shadows);
+  lighting.shadow_resolution = options.shadow_resolution.value_or(lighting.shadow_resolution);
+  lighting.ambient_occlusion = options.ambient_occlusion.value_or(lighting.ambient_occlusion);
+  if (options.wants_light() && !options.lights && !lighting.is_lit()) lighting.lights.emplace_back();
+}
+
+}  // namespace
+
+void override_effects(const EffectOptions& options, Scene& scene) {
+  RenderSettings& settings = scene.settings;
+  override_lighting(options, settings.lighting);
+  if (!options.surfaces.empty()) settings.surfaces.clear();
+  for (const SurfaceOption& option : options.surfaces) {
+    Isosurface& surface = settings.surfaces.emplace_back();
+    surface.value = option.value;
+    surface.opacity = option.opacity;
+    surface.is_two_sided = !options.are_surfaces_one_sided;
+  }
+  if (!options.clip_shapes.empty()) settings.clipping.shapes = options.clip_shapes;
+  settings.clipping.use_union = options.use_union.value_or(settings.clipping.use_union);
+  settings.opacity_weight = options.weight.value_or(settings.opacity_weight);
+  settings.opacity_weight_scale = options.weight_scale.value_or(settings.opacity_weight_scale);
+  try {
+    validate_lighting(settings.lighting);
+  } catch (const Error& error) {
+    throw UsageError(error.what());
+  }
+}
+
+void complete_effects(const EffectOptions& options, CompletedScene& completed, Scene& scene) {
+  RenderSettings& settings = scene.settings;
+  for (std::size_t i = 0; i < options.surfaces.size(); ++i) {
+    const SurfaceOption& option = options.surfaces[i];
+    Isosurface& surface = settings.surfaces[i];
+    surface.front_color =
+        option.color ? *option.color : eval_optical_function(completed.optical_function, option.value).color;
+    surface.back_color = options.surface_back_color.value_or(surface.front_color);
+  }
+  if (options.shows_volume && !*options.shows_volume) {
+    for (ControlPoint& point : completed.transfer_function.points) point.absorption = 0.0;
+    for (OpticalPoint& point : completed.optical_function.points) point.extinction = 0.0;
+  }
+}
+
+void SceneParts::load(const Scene& scene, const Progress& progress) {
+  const RenderSettings& settings = scene.settings;
+  for (std::size_t i = 0; i < settings.clipping.shapes.size(); ++i) {
+    const auto* volume = std::get_if<ClipVolume>(&settings.clipping.shapes[i].shape);
+    if (!volume) continue;
+    ReadOptions read;
+    read.array.name = volume->array;
+    const Dataset dataset = read_dataset(volume->file, read, progress);
+    if (!dataset.is_grid())
+      throw Error(ErrorCode::kUnsupported, "'" + volume->file + "' is a mesh: a clip volume must be a grid");
+    volumes_.push_back({i, std::make_unique<PreparedGrid>(prepare_grid(dataset.grid, progress))});
+  }
+}
+
+void SceneParts::attach(Renderer& renderer) const {
+  for (const Volume& volume : volumes_) renderer.set_clip_volume(volume.shape, *volume.grid);
+}
+
+}  // namespace tetravox::tool

@@ -1,0 +1,40 @@
+#pragma once
+
+/// Light, surfaces and clipping: from the command line and the scene to the renderer.
+
+#include "apps/tetravox/options.h"
+
+#include "tetravox/grid.h"
+#include "tetravox/progress.h"
+#include "tetravox/render.h"
+#include "tetravox/scene.h"
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace tetravox::tool {
+
+/// Puts the options over the scene, before data are read. @throws UsageError.
+void override_effects(const EffectOptions& options, Scene& scene);
+
+/// What the data decide: colours of surfaces, and whether the volume is drawn. After the transfer function is known.
+void complete_effects(const EffectOptions& options, CompletedScene& completed, Scene& scene);
+
+/// Files that a scene names beside its data, as the renderer wants them.
+class SceneParts {
+ public:
+  /// Reads and prepares them. @throws Error that names the file.
+  void load(const Scene& scene, const Progress& progress);
+  /// Hands them to a renderer, which views them.
+  void attach(Renderer& renderer) const;
+
+ private:
+  struct Volume {
+    std::size_t shape = 0;
+    std::unique_ptr<PreparedGrid> grid;
+  };
+  std::vector<Volume> volumes_;
+};
+
+}  // namespace tetravox::tool
