@@ -15,7 +15,7 @@ green="--resolution 250,250 --transfer-function docs/methods/random-green.json $
 shells="--resolution 180,180 --transfer-function rainbow:peaks=4 --unit-distance 0.5 $atom 18"
 waves='--resolution 190,190 --transfer-function coolwarm:peaks=1 --range 0,1 --unit-distance 0.012 --camera-position -1.9,-3,4.6 --camera-focal-point 0,0,-0.05 --camera-view-up 0,0,1 --camera-view-angle 22'
 
-# Each line: set, picture, what `tetravox render` is given.
+# Each line: set, picture, what `tetravox render` is given (or `tetravox histogram`, where that word comes first).
 pictures="
 demo     buckyball         builtin:buckyball?cells=2000000 --transfer-function inferno:peaks=4 --range 0.05,1.04 --unit-distance 0.016 $ball 23
 demo     duct              builtin:duct?cells=300000 --array speed --transfer-function turbo:peaks=12 $above 31
@@ -50,6 +50,10 @@ methods  waves-interpolating builtin:marschner-lobb $waves --filter bspline-inte
 methods  waves-catmull-rom builtin:marschner-lobb $waves --filter catmull-rom
 methods  waves-mitchell    builtin:marschner-lobb $waves --filter mitchell
 methods  waves-lanczos     builtin:marschner-lobb $waves --filter lanczos=4
+methods  boundaries-default builtin:buckyball?cells=500000 --resolution 320,320 $ball 23
+methods  boundaries        builtin:buckyball?cells=500000 --resolution 320,320 --transfer-function auto:boundaries $ball 23
+methods  boundaries-thick  builtin:buckyball?cells=500000 --resolution 320,320 --transfer-function auto:boundaries=1.5 $ball 23
+methods  boundaries-histogram histogram builtin:buckyball?cells=500000 --kind gradient
 "
 
 [ $# -eq 3 ] || { echo "usage: tools/draw_pictures.sh demo|gallery|methods TOOL DIRECTORY" >&2; exit 2; }
@@ -63,6 +67,10 @@ esac
 mkdir -p "$directory"
 while read -r set name arguments; do
   [ "$set" = "$wanted" ] || continue
+  case $arguments in
+    histogram*) ;;
+    *) arguments="render $arguments $size" ;;
+  esac
   # shellcheck disable=SC2086  # the arguments of the table are words
-  "$tool" render $arguments $size -o "$directory/$name.png"
+  "$tool" $arguments -o "$directory/$name.png"
 done <<<"$pictures"

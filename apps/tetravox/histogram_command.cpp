@@ -75,7 +75,7 @@ std::string edge(const ValueRange& range, std::size_t i, std::size_t count) {
 }
 
 std::string format_csv(const Histogram& histogram) {
-  std::string text = "value_from,value_to,volume\n";
+  std::string text = "value_from,value_to,share\n";
   const std::size_t count = histogram.counts.size();
   for (std::size_t i = 0; i < count; ++i)
     text += edge(histogram.range, i, count) + "," + edge(histogram.range, i + 1, count) + "," +
@@ -84,7 +84,7 @@ std::string format_csv(const Histogram& histogram) {
 }
 
 std::string format_csv(const Histogram2D& histogram) {
-  std::string text = "value_from,value_to,gradient_from,gradient_to,volume\n";
+  std::string text = "value_from,value_to,gradient_from,gradient_to,share\n";
   const auto columns = static_cast<std::size_t>(histogram.bins),
              rows = static_cast<std::size_t>(histogram.gradient_bins);
   for (std::size_t row = 0; row < rows; ++row) {

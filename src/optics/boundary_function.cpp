@@ -17,8 +17,10 @@ constexpr double kSmoothing = 1.0 / 150.0;  // of the range
 constexpr double kFlat = 0.08;              // of the largest mean gradient: below it there is no boundary
 constexpr double kRare = 1e-6;              // of the volume: fewer places tell nothing
 constexpr double kColorsByValue = 0.2;      // 0: the same length of the colours for everything emphasised
-constexpr double kTail = 0.01;              // of the area of all iso-surfaces, whose derivatives are outliers
-constexpr double kRarity = 0.4;             // 0: all boundaries alike; 1: the more opaque, the fewer places they take
+constexpr double kLeastDepth = 0.1;         // of a ray, on average, if need be with thicker boundaries
+constexpr double kMostWidening = 10.0;
+constexpr double kTail = 0.01;   // of the area of all iso-surfaces, whose derivatives are outliers
+constexpr double kRarity = 0.4;  // 0: all boundaries alike; 1: the more opaque, the fewer places they take
 
 /// Shares of the volume outside the background; of all where nothing else is.
 std::vector<double> shares_outside(const DerivativeProfile& profile, const std::optional<ValueRange>& background) {
@@ -48,6 +50,14 @@ double quantile(const std::vector<double>& numbers, const std::vector<double>& w
     if (below > part * total) return numbers[i];
   }
   return 0.0;
+}
+
+/// The boundary emphasis function b(p(v)): a Gaussian.
+std::vector<double> emphasise(const std::vector<double>& positions, double thickness) {
+  std::vector<double> emphasis(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    emphasis[i] = std::exp(-0.5 * (positions[i] / thickness) * (positions[i] / thickness));
+  return emphasis;
 }
 
 TransferFunction constant_function(const DerivativeProfile& profile, const BoundaryShape& shape) {
@@ -96,15 +106,19 @@ TransferFunction make_boundary_function(const DerivativeProfile& profile, const 
   const std::vector<double> shares = shares_outside(profile, shape.background);
   const std::vector<double> smooth = smoothed(shares, static_cast<double>(count) / 128.0);
 
-  // Emphasise the middle of each boundary, rare ones more; spread the colours over what is emphasised.
-  std::vector<double> extinctions(count), crowds(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double x = positions_of_values[i] / shape.thickness, emphasis = std::exp(-0.5 * x * x);
-    extinctions[i] = emphasis * std::pow(smooth[i] * static_cast<double>(count) + 0.1, -kRarity);
-    crowds[i] = emphasis * smooth[i];
-  }
-  extinctions = scale_to_budget(smooth, extinctions);
+  // Emphasise the middle of each boundary, rare ones more, as thick as it takes to see something at all.
+  std::vector<double> emphasis, extinctions(count), crowds(count);
+  double thickness = shape.thickness;
+  do {
+    emphasis = emphasise(positions_of_values, thickness);
+    for (std::size_t i = 0; i < count; ++i)
+      extinctions[i] = emphasis[i] * std::pow(smooth[i] * static_cast<double>(count) + 0.1, -kRarity);
+    extinctions = scale_to_budget(smooth, extinctions);
+    thickness *= 1.25;
+  } while (mean_depth(smooth, extinctions) < kLeastDepth && thickness < kMostWidening * shape.thickness);
 
+  // Spread the colours over what is emphasised.
+  for (std::size_t i = 0; i < count; ++i) crowds[i] = emphasis[i] * smooth[i];
   const std::vector<double> u = positions(crowds, kColorsByValue);
   TransferFunction function;
   function.absorption = Absorption::kOpacity;

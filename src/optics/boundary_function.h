@@ -36,8 +36,8 @@ struct BoundaryShape {
   std::optional<ValueRange> background;  ///< takes no part in how much opacity there is to give away
 };
 
-/// Opacity exp(-(p(v) / thickness)^2 / 2), scaled so that a ray through everything is neither clear nor solid; colours
-/// as those of the default function.
+/// Opacity exp(-(p(v) / thickness)^2 / 2), scaled so that a ray through everything is neither clear nor solid
+/// (thicker where next to nothing would be seen); colours as those of the default function, spread over what is opaque.
 TransferFunction make_boundary_function(const DerivativeProfile& profile, const BoundaryShape& shape);
 
 }  // namespace tetravox::optics

@@ -16,13 +16,6 @@ constexpr double kSolidExtinction = 0.6;  // of rare values, in a hundredth of t
 constexpr double kThinnestBody = 0.005;   // of the most frequent values, where rare ones are to be seen
 constexpr double kLeastDepth = 0.9;       // of a ray, if need be with a thicker body
 
-/// Optical depth of a ray on which values are as frequent as in the data.
-double mean_depth(const std::vector<double>& shares, const std::vector<double>& extinctions) {
-  double mean = 0.0;
-  for (std::size_t i = 0; i < shares.size(); ++i) mean += shares[i] * extinctions[i];
-  return kRayLength * mean;
-}
-
 }  // namespace
 
 double opacity_from_extinction(double extinction) { return -std::expm1(-extinction); }
@@ -55,10 +48,17 @@ std::vector<double> positions(const std::vector<double>& shares, double part_by_
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const double root = std::sqrt(shares[i]);
     const double by_value = (static_cast<double>(i) + 0.5) / static_cast<double>(shares.size());
-    u[i] = total > 0.0 ? std::lerp((below + 0.5 * root) / total, by_value, part_by_value) : by_value;
+    u[i] = by_value;
+    if (total > 0.0) u[i] = part_by_value * by_value + (1.0 - part_by_value) * (below + 0.5 * root) / total;
     below += root;
   }
   return u;
+}
+
+double mean_depth(const std::vector<double>& shares, const std::vector<double>& extinctions) {
+  double mean = 0.0;
+  for (std::size_t i = 0; i < shares.size(); ++i) mean += shares[i] * extinctions[i];
+  return kRayLength * mean;
 }
 
 std::vector<double> widened(const std::vector<double>& shares) {

@@ -29,6 +29,9 @@ std::vector<double> positions(const std::vector<double>& shares, double part_by_
 /// The largest share of each bin and its two neighbours: a value at the edge of a bin is drawn with both.
 std::vector<double> widened(const std::vector<double>& shares);
 
+/// Optical depth of a ray on which values are as frequent as in the data.
+double mean_depth(const std::vector<double>& shares, const std::vector<double>& extinctions);
+
 /// Scales extinctions to the budget of optical depth. Rare values may be nearly solid. The most frequent ones, by
 /// `crowds`, stay below a body's extinction, which is raised only as far as it takes to see something at all.
 std::vector<double> fit_budget(const std::vector<double>& shares, const std::vector<double>& crowds,

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 
 namespace tetravox {
 namespace {
@@ -36,7 +37,8 @@ optics::DerivativeProfile make_profile(const Prepared& prepared, const ValueRang
 template <class Prepared>
 TransferFunction make_function(const Prepared& prepared, const BoundaryOptions& options) {
   if (!(options.thickness >= kThinnest && options.thickness <= kThickest))
-    throw Error(ErrorCode::kInvalidArgument, "the thickness of boundaries lies between 0.05 and 5");
+    throw Error(ErrorCode::kInvalidArgument,
+                "the thickness of boundaries must lie between 0.05 and 5, not " + std::to_string(options.thickness));
   const Histogram histogram = make_histogram(prepared, kBins);
   // A boundary begins in what surrounds the objects: that is looked at too.
   ValueRange range = histogram.range;

@@ -19,16 +19,17 @@ class Listing : public ToolTest {
 };
 
 TEST_F(Listing, HelpAndVersion) {
-  expect_text({"--help"}, {"render", "info", "list", "Examples:"});
+  expect_text({"--help"}, {"render", "info", "histogram", "list", "Examples:"});
   expect_text({"render", "--help"}, {"--transfer-function", "--range", "--camera-position", "--early-ray-termination",
                                      "--time", "a whole number is an index", "Examples:", "--statistics"});
   expect_text({"info", "--help"}, {"--json", "--time"});
+  expect_text({"histogram", "--help"}, {"--kind", "--counts", "--bins", "--gradient-range", "--time", "Examples:"});
   expect_text({"list", "--help"}, {"presets"});
   expect_text({"--version"}, {"tetravox 0."});
 }
 
 TEST_F(Listing, Topics) {
-  expect_text({"list", "presets"}, {"viridis", "coolwarm", "peaks", "random"});
+  expect_text({"list", "presets"}, {"viridis", "coolwarm", "peaks", "random", "auto:boundaries"});
   expect_text({"list", "readers"}, {"VTU", ".png", ".exr", ".npy"});
   expect_text({"list", "builtins"}, {"builtin:sphere", "builtin:buckyball", "builtin:duct"});
   expect_text({"list", "methods"}, {"walk", "antiderivative", "partial", "post", "Instruction sets"});

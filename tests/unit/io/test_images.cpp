@@ -185,6 +185,20 @@ TEST_F(Images, NpyIsWhatNumpyReads) {
   EXPECT_EQ(std::memcmp(bytes.data() + 10 + header, image.pixels.data(), 24 * sizeof(float)), 0);
 }
 
+TEST_F(Images, ArraysOfAnyShape) {
+  const std::vector<double> values{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
+  for (const auto& [shape, text] : {std::pair<std::vector<std::size_t>, std::string>{{6}, "'shape': (6,)"},
+                                    std::pair<std::vector<std::size_t>, std::string>{{2, 3}, "'shape': (2, 3)"}}) {
+    write_array(path("values.npy"), values, shape);
+    const std::string bytes = read_bytes(path("values.npy"));
+    EXPECT_NE(bytes.find(text), std::string::npos);
+    EXPECT_NE(bytes.find("'<f8'"), std::string::npos);
+    ASSERT_EQ(bytes.size() % 64, 6 * sizeof(double));
+    EXPECT_EQ(std::memcmp(bytes.data() + bytes.size() - 6 * sizeof(double), values.data(), 6 * sizeof(double)), 0);
+  }
+  EXPECT_THROW(write_array(path("values.npy"), values, {4}), Error);
+}
+
 TEST_F(Images, SceneComesBack) {
   WriteOptions options;
   options.scene = kScene;

@@ -127,12 +127,15 @@ TEST(ValueHistogram, RefusesWhatMakesNoSense) {
   const PreparedMesh mesh = make_mesh_of(radius, 2);
   HistogramOptions options;
   options.bins = 0;
-  expect_error(ErrorCode::kInvalidArgument, [&] { make_value_histogram(mesh, options); }, "bins");
+  expect_error(
+      ErrorCode::kInvalidArgument, [&] { make_value_histogram(mesh, options); }, "bins");
   options.bins = 5000;
-  expect_error(ErrorCode::kInvalidArgument, [&] { make_gradient_histogram(mesh, options); }, "4096");
+  expect_error(
+      ErrorCode::kInvalidArgument, [&] { make_gradient_histogram(mesh, options); }, "4096");
   options.bins = 10;
   options.range = ValueRange{1.0, 1.0};
-  expect_error(ErrorCode::kInvalidArgument, [&] { make_value_histogram(mesh, options); }, "range");
+  expect_error(
+      ErrorCode::kInvalidArgument, [&] { make_value_histogram(mesh, options); }, "range");
 }
 
 /// The mean gradient magnitude and its spread.
@@ -262,7 +265,8 @@ TEST(BoundaryFunction, ThicknessAndRange) {
   const TransferFunction part = make_boundary_transfer_function(grid, options);
   EXPECT_GE(part.points.front().value, 0.5);
   options.thickness = 0.0;
-  expect_error(ErrorCode::kInvalidArgument, [&] { make_boundary_transfer_function(grid, options); }, "thickness");
+  expect_error(
+      ErrorCode::kInvalidArgument, [&] { make_boundary_transfer_function(grid, options); }, "thickness");
 }
 
 TEST(BoundaryFunction, OfFieldsWithoutBoundaries) {
