@@ -35,7 +35,7 @@ constexpr char kExamples[] = R"(Examples:
   tetravox render builtin:buckyball -o ball.png     an embedded dataset
   tetravox render head.nii.gz                       a regular grid, as easily
   tetravox render engine.vtu -o engine.exr --array pressure --transfer-function viridis:ramp --range -0.5,1
-  tetravox render engine.vtu --shade                lit by a headlight; --lights, --shadows and --environment say more
+  tetravox render engine.vtu --shade                lit by a headlight; --lights and --shadows say more
   tetravox render engine.vtu --isosurface 0.3 --clip-plane 0,0,0,1,0,0
   tetravox render scene.json --resolution 1920,1080 the scene in a file, larger
   tetravox render engine.png -o again.png           the scene that a picture holds

@@ -121,23 +121,6 @@ struct DatasetInfo {
   std::vector<std::string> notes;    ///< one-line remarks that a user should see
 };
 
-/// Another array of a mesh, for functions of several variables.
-struct MeshArray {
-  std::span<const double> values;  ///< [points] or [cells]
-  Association association = Association::kPoint;
-  std::string name;
-  int component = 0;
-};
-
-/// Another array of a grid, on the same lattice, with the same association as the one to draw.
-struct GridArray {
-  ScalarType type = ScalarType::kUint8;
-  int components = 1;
-  int component = 0;
-  std::span<const std::byte> values;
-  std::string name;
-};
-
 /// Views of a mesh and of the scalar field to draw. Ids are below 2^32 - 1. Immutable; safe to read from many threads.
 struct MeshData {
   std::span<const double> points;               ///< [points][3], world coordinates
@@ -151,7 +134,6 @@ struct MeshData {
   Association association = Association::kPoint;
   std::string array_name;  ///< what `scalars` holds
   int component = 0;       ///< component of the array, or `kMagnitude`
-  std::vector<MeshArray> others;
   std::shared_ptr<const void> storage;
 
   std::size_t point_count() const { return points.size() / 3; }
@@ -167,7 +149,6 @@ struct GridData {
   int component = 0;                  ///< the one to draw, or `kMagnitude`
   std::span<const std::byte> values;  ///< [k][j][i][components], i fastest, this machine's byte order
   std::string array_name;
-  std::vector<GridArray> others;
   std::shared_ptr<const void> storage;
 
   /// How many values there are along i, j, k: the shape's points or cells.

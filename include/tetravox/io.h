@@ -21,7 +21,6 @@ namespace tetravox {
 
 struct ReadOptions {
   ArrayRequest array;
-  std::vector<ArrayRequest> others;  ///< further arrays to read, see `MeshData::others`
   TimeRequest time;
   RawLayout raw;                   ///< RAW files only
   std::string grid_file;           ///< PLOT3D: the solution (Q) file that goes with the grid at `path`

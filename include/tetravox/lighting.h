@@ -1,15 +1,14 @@
 #pragma once
 
-/// Light: what makes shape visible. Blinn-Phong as in Engel and Ertl 2002, environments, shadows, ambient occlusion.
+/// Light: what makes shape visible. Blinn-Phong as in Engel and Ertl 2002, shadows, ambient occlusion.
 ///
-/// Without lights and without an environment a picture is emission and absorption alone (docs/conventions.md). With
-/// them, the emitted colour c of each stretch of a ray is multiplied by the light that arrives there, and a highlight
-/// is added (docs/methods/light.md).
+/// Without lights a picture is emission and absorption alone (docs/conventions.md). With them, the emitted colour c of
+/// each stretch of a ray is multiplied by the light that arrives there, and a highlight is added
+/// (docs/methods/light.md).
 
 #include "tetravox/camera.h"
 #include "tetravox/transfer_function.h"
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -48,24 +47,13 @@ struct Light {
   double intensity = 1.0;  ///< >= 0
 };
 
-/// A picture of the surroundings: lights from everywhere, is mirrored in highlights. Not drawn itself.
-struct Environment {
-  std::string map;  ///< a file (.png or .exr, equirectangular), six files "A.png,B.png,..." (+x -x +y -y +z -z), or
-                    ///< a name of `environment_names()`; empty: none
-  double diffuse = 1.0;    ///< weight of the irradiance, >= 0
-  double specular = 0.3;   ///< weight of the reflection, >= 0
-  double roughness = 0.2;  ///< of the reflection's lobe, in [0, 1]
-};
-
 enum class ShadowKind {
   kNone,
-  kVolume,  ///< optical depth towards each light, on a lattice over the bounds
-  kRays     ///< a ray towards each light from each place that is shaded: exact, slow
+  kVolume  ///< optical depth towards each light, on a lattice that it sees
 };
 
 struct Lighting {
   std::vector<Light> lights;
-  Environment environment;
   Material material;
   GradientMethod gradient = GradientMethod::kDefault;
   /// Gradient magnitude at which shading is at half its strength, in units of value range / diagonal of the bounds;
@@ -76,7 +64,7 @@ struct Lighting {
   int shadow_resolution = 128;       ///< lattice points along each axis, in [8, 512]
   int ambient_occlusion = 0;         ///< directions over the sphere, in [0, 1024]; 0: none
   std::uint64_t occlusion_seed = 1;  ///< of the order of directions
-  bool is_lit() const { return !lights.empty() || !environment.map.empty(); }
+  bool is_lit() const { return !lights.empty(); }
 };
 
 /// Names of enumerators as on the command line and in scene files, and back.
@@ -85,7 +73,7 @@ std::string name_of(GradientMethod method);  ///< "default", "filter", "central"
 GradientMethod gradient_method_from_name(const std::string& name);
 std::string name_of(LightKind kind);  ///< "headlight", "directional", "point"
 LightKind light_kind_from_name(const std::string& name);
-std::string name_of(ShadowKind kind);  ///< "none", "volume", "rays"
+std::string name_of(ShadowKind kind);  ///< "none", "volume"
 ShadowKind shadow_kind_from_name(const std::string& name);
 /// Names, one-line descriptions.
 std::vector<std::pair<std::string, std::string>> gradient_method_names();
@@ -93,22 +81,5 @@ std::vector<std::pair<std::string, std::string>> shadow_kind_names();
 
 /// @throws Error (kInvalidArgument) that names the member.
 void validate_lighting(const Lighting& lighting);
-
-/// An environment as the renderer looks it up. World directions; colours as displayed.
-struct EnvironmentMap {
-  /// Irradiance / pi as nine coefficients of spherical harmonics a colour (Ramamoorthi and Hanrahan 2001), the cosine
-  /// lobe already applied: light on a surface = sum of coefficients[i] * Y_i(normal).
-  std::array<std::array<float, 3>, 9> irradiance{};
-  int size = 0;                 ///< texels along the side of a face
-  std::vector<float> specular;  ///< [6 faces: +x -x +y -y +z -z][size][size][4], filtered for the roughness; OpenGL's
-                                ///< orientation of faces; the fourth channel is unused
-};
-
-/// Reads or makes the map that `environment` names, and filters it. Paths as given.
-/// @throws Error that names the file; kInvalidArgument that lists the names there are.
-EnvironmentMap make_environment_map(const Environment& environment);
-
-/// Embedded environments: name and one-line description.
-std::vector<std::pair<std::string, std::string>> environment_names();
 
 }  // namespace tetravox

@@ -12,7 +12,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace tetravox {
@@ -56,17 +55,6 @@ struct PrepareReport {
   std::uint64_t boundary_faces = 0;
 };
 
-/// One of `MeshData::others`, prepared. value = scalar_offset + stored * scalar_scale.
-struct MeshField {
-  std::string name;
-  int component = 0;
-  Association association = Association::kPoint;
-  std::vector<float> stored;  ///< [vertices] or [cells]; not a number where missing
-  double scalar_offset = 0.0;
-  double scalar_scale = 1.0;
-  ValueRange range;  ///< of the finite values
-};
-
 /// Tetrahedra with adjacency, in space-filling order. Immutable once made; safe to read from many threads.
 ///
 /// Frames: world = origin + local * world_per_local, with `origin` the middle of the bounds, so that |local| <= 1:
@@ -77,7 +65,6 @@ struct PreparedMesh {
   std::vector<TetrahedronLinks> cells;
   std::vector<float> cell_scalars;  ///< [cells] with cell data, otherwise empty
   std::vector<BoundaryFace> boundary;
-  std::vector<MeshField> others;
 
   std::array<double, 3> origin{};
   double world_per_local = 1.0;

@@ -6,7 +6,6 @@
 
 #include "tetravox/camera.h"
 #include "tetravox/clipping.h"
-#include "tetravox/domain_function.h"
 #include "tetravox/grid.h"
 #include "tetravox/image.h"
 #include "tetravox/isosurface.h"
@@ -113,16 +112,8 @@ class Renderer {
   /// @throws Error (kInvalidArgument) for no points, values that descend or are not finite, negative extinctions.
   void set_transfer_function(const OpticalFunction& function);
 
-  /// A function of several variables in place of the transfer function; `axes` say what each variable is, as many as
-  /// the table has. Arrays are those of the dataset's `others`, by name. An empty table: back to the transfer function.
-  /// @throws Error (kInvalidArgument) for arrays that the data do not have.
-  void set_domain_function(const DomainTable& table, const std::vector<DomainAxis>& axes);
-
   /// The grid of the clip volume at index `shape` of `RenderSettings::clipping`. Views it.
   void set_clip_volume(std::size_t shape, const PreparedGrid& grid);
-
-  /// What `RenderSettings::lighting.environment` looks like.
-  void set_environment(EnvironmentMap map);
 
   /// The picture. The same bytes for any number of threads, on every run and with every instruction set.
   /// @throws Error: kInvalidArgument for settings or camera out of range, kOutOfMemory, kCancelled.

@@ -42,7 +42,6 @@ struct SceneData {
 struct Scene {
   SceneData data;
   std::optional<TransferFunction> transfer_function;  ///< empty: from the data's histogram
-  std::optional<DomainFunction> domain_function;      ///< drawn in place of it
   std::optional<Camera> camera;                       ///< empty: an oblique view of everything
   Color background{0, 0, 0};
   RenderSettings settings;  ///< `threads` and `instruction_set` are not part of a scene file: no pixel depends on them

@@ -131,7 +131,6 @@ void BrickLattice::fill(const LatticeField& field, MarchBrick& brick) {
     field.reader->read(block_, values_.data());
   }
   if (field.is_nearest) spread_values(brick);
-  if (!field.others.empty()) fill_others(field, values, brick);
   if (field.gradients != GradientSource::kNone) fill_gradients(field, values, parts, brick);
   if (field.is_constant) {
     brick.constants = values_.data();
@@ -243,39 +242,6 @@ void BrickLattice::fill_gradients(const LatticeField& field, const grid::Block& 
   }
   gradients_.resize(gradients_.size() + 4 * nodes_beyond(brick));
   brick.gradients = gradients_.data();
-}
-
-/// Further fields, linear (or constant) between their values.
-void BrickLattice::fill_others(const LatticeField& field, const grid::Block& values, MarchBrick& brick) {
-  for (std::size_t i = 0; i < field.others.size(); ++i) {
-    std::vector<float>& nodes = margin_;
-    nodes.resize(static_cast<std::size_t>(values.size()));
-    field.others[i]->read(values, nodes.data());
-    if (field.is_constant) {
-      others_[i] = nodes;
-    } else {
-      nodes.resize(nodes.size() + kRecordPadding);
-      const std::size_t cells =
-          static_cast<std::size_t>((values.count[0] - 1) * (values.count[1] - 1) * values.count[2]);
-      others_[i].resize(4 * (cells + kRecordPadding));
-      field.kernels->make_records(nodes.data(), brick.cells, others_[i].data());
-    }
-    brick.others[i] = others_[i].data();
-  }
-}
-
-/// Pre-classification with a kernel: it is the densities of the values that are filtered, channel by channel.
-void BrickLattice::filter_densities(const LatticeField& field, MarchBrick& brick) {
-  constexpr int kParts = 4;
-  read_margin(field);
-  const std::vector<float> scalars = margin_;
-  for (std::size_t channel = 0; channel < 4; ++channel) {
-    for (std::size_t i = 0; i < scalars.size(); ++i)
-      margin_[i] = optics::eval_densities(*field.points, scalars[i])[channel];
-    divide_cells(field, kParts, brick);
-    if (channel == 0) records_.assign(4 * (values_.size() + nodes_beyond(brick)), 0.0f);
-    for (std::size_t i = 0; i < values_.size(); ++i) records_[4 * i + channel] = values_[i];
-  }
 }
 
 /// `weights`: for each axis, [parts][taps].

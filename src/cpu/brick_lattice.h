@@ -27,8 +27,7 @@ struct LatticeField {
   bool is_nearest = false;                            ///< of them: eighths of cells, each with the value of its corner
   float allowed_rate = 0.0f;                          ///< see MarchJob
   GradientSource gradients = GradientSource::kNone;
-  DifferenceField differences;                   ///< of the values, for `kCentral`
-  std::vector<const grid::BlockReader*> others;  ///< further fields, for functions of several variables
+  DifferenceField differences;  ///< of the values, for `kCentral`
 };
 
 /// Memory of one lattice at a time, used again and again.
@@ -58,7 +57,6 @@ class BrickLattice {
   void fill_gradients(const LatticeField& field, const grid::Block& values, int parts, MarchBrick& brick);
   void filter_gradients(const LatticeField& field, int parts, const MarchBrick& brick);
   void rescale_gradients(int axis, int parts);
-  void fill_others(const LatticeField& field, const grid::Block& values, MarchBrick& brick);
   void fill_records(const Kernels& kernels, const MarchBrick& brick);
   void fill_densities(const optics::ControlPointTable& points, const MarchBrick& brick);
 
@@ -70,7 +68,6 @@ class BrickLattice {
   grid::Block margin_block_;
   std::vector<float> margin_, along_x_, along_y_;
   std::vector<float> gradients_, coarse_gradients_;
-  std::array<std::vector<float>, 2> others_;
 };
 
 }  // namespace tetravox::cpu

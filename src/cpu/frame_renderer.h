@@ -18,7 +18,6 @@ struct FrameContext {
   const Kernels& kernels;
   const Progress& progress;
   std::span<const PreparedGrid* const> clip_volumes;  ///< one a shape of the clipping, null where it is no volume
-  const EnvironmentMap* environment = nullptr;
 };
 
 /// Draws frames of one dataset. Not safe for concurrent calls.

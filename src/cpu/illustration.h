@@ -52,7 +52,7 @@ bool wants_gradients(const RenderSettings& settings);
 /// @throws Error (kUnsupported) for settings that do not go together.
 void require_effects(const RenderSettings& settings, bool has_constant_cells);
 
-/// Fills all but shadows, occlusion, environment, domain, depth and record.
+/// Fills all but shadows, occlusion, depth and record.
 void illustrate(const RenderSettings& settings, const IllustratedFrame& frame, Illustration& illustration);
 
 /// What lights see, from frame to frame as long as nothing changes.

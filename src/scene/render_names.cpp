@@ -47,10 +47,9 @@ constexpr std::array<Name<LightKind>, 3> kLightKinds{{{LightKind::kHeadlight, "h
                                                       {LightKind::kDirectional, "directional", "parallel rays"},
                                                       {LightKind::kPoint, "point", "shines from a place"}}};
 
-constexpr std::array<Name<ShadowKind>, 3> kShadowKinds{
+constexpr std::array<Name<ShadowKind>, 2> kShadowKinds{
     {{ShadowKind::kNone, "none", "light reaches everything"},
-     {ShadowKind::kVolume, "volume", "optical depth towards each light on a lattice"},
-     {ShadowKind::kRays, "rays", "a ray towards each light from each shaded place: exact, slow"}}};
+     {ShadowKind::kVolume, "volume", "optical depth towards each light, on a lattice that it sees"}}};
 
 template <class Names>
 auto enumerator_from_name(const Names& names, std::string_view name, std::string_view what) {

@@ -75,10 +75,6 @@ void validate_lighting(const Lighting& lighting) {
   require_number("material, diffuse", material.diffuse, 0.0, 1.0);
   require_number("material, specular", material.specular, 0.0, 1.0);
   require_number("material, shininess", material.shininess, 1.0, 1000.0);
-  const Environment& environment = lighting.environment;
-  require_number("environment, diffuse", environment.diffuse, 0.0, 1e6);
-  require_number("environment, specular", environment.specular, 0.0, 1e6);
-  require_number("environment, roughness", environment.roughness, 0.0, 1.0);
   require_number("gradient threshold", lighting.gradient_threshold, 0.0, 1e30);
   require_number("shadow resolution", lighting.shadow_resolution, 8, 512);
   require_number("ambient occlusion", lighting.ambient_occlusion, 0, 1024);

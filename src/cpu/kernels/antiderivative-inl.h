@@ -31,8 +31,6 @@ class AntiderivativeIntegrator {
     Float densities[4];
   };
   using Front = Point;
-  static constexpr bool kTakesPlaces = false;
-
   explicit AntiderivativeIntegrator(const IntegratorTables& tables)
       : table_(*tables.antiderivative),
         entries_(table_.entries.data()),
@@ -286,8 +284,6 @@ class AntiderivativeIntegrator {
 /// instead of three.
 class GentleAntiderivativeIntegrator {
  public:
-  static constexpr bool kTakesPlaces = false;
-
   /// The scalar at the front, the node that stands for it, and the antiderivatives there.
   struct Front {
     Float position;  // in nodes

@@ -89,19 +89,6 @@ struct CellStretch {
     return {hn::Div(x, size[0]), hn::Div(y, size[1]), hn::Div(z, size[2])};
   }
 
-  HWY_INLINE Float other(int field, Float u) const {
-    Float t[3];
-    find_place(u, t);
-    const MarchBrick& brick = *job.brick;
-    const float* records = brick.others[field];
-    const Record low = load_table_records(records, hn::BitCast(kUint, rays.cell));
-    const Record high = load_table_records(records + 4 * static_cast<std::ptrdiff_t>(brick.cells[0]) * brick.cells[1],
-                                           hn::BitCast(kUint, rays.cell));
-    const auto mixed = [](Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); };
-    const auto square = [&](const Record& r) { return mixed(t[1], mixed(t[0], r.x, r.y), mixed(t[0], r.z, r.w)); };
-    return mixed(t[2], square(low), square(high));
-  }
-
  private:
   HWY_INLINE void find_place(Float u, Float t[3]) const {
     const Float depth = multiply_add(u, hn::Sub(z_back, z_front), z_front);
@@ -155,12 +142,6 @@ struct StepStretch {
             hn::Mul(slope.z, constant(cells_per_unit(2)))};
   }
 
-  HWY_INLINE Float other(int field, Float u) const {
-    Float place[3];
-    find_place(u, place);
-    return sampler.eval_records(brick.others[field], place);
-  }
-
  private:
   HWY_INLINE float cells_per_unit(int axis) const {
     return static_cast<float>(brick.cells[axis]) / (brick.upper[axis] - brick.lower[axis]);
@@ -185,7 +166,6 @@ struct ConstantStretch {
     const Record r = load_table_records(brick.gradients, hn::BitCast(kUint, cell));
     return {r.x, r.y, r.z};
   }
-  HWY_INLINE Float other(int field, Float) const { return hn::GatherIndex(kFloat, brick.others[field], cell); }
 };
 
 /// Where a vector of rays lies in the picture, and what it has met so far.

@@ -7,7 +7,7 @@
 //   Float scalar(Float u)                                      strictly inside
 //   static constexpr bool kIsLinear; and where it is not: void find_extrema(Float extrema[2]); Float bend(),
 //   slope(Float u) Float count_pieces(from, to, transmittance)                linear pieces that the tolerance asks for
-//   Triple gradient(Float u); Float other(int field, Float u)
+//   Triple gradient(Float u)
 
 #if defined(TETRAVOX_CPU_EFFECTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETRAVOX_CPU_EFFECTS_INL
@@ -92,7 +92,7 @@ class EffectIntegrator {
   explicit EffectIntegrator(const IntegratorTables& tables)
       : base_(tables),
         effects_(*tables.effects),
-        is_light_all_(effects_.shading && !is_weighted() && !effects_.depth && !effects_.record && !effects_.domain),
+        is_light_all_(effects_.shading && !is_weighted() && !effects_.depth && !effects_.record),
         is_lit_from_eye_(effects_.shading && is_lit_from_eye(*effects_.shading)) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return base_.front_at(scalar); }
@@ -107,19 +107,17 @@ class EffectIntegrator {
   template <class MakeStretch, class MakeRay>
   HWY_INLINE void integrate_lit_segment(const Segments& segment, const MakeStretch& make_stretch,
                                         const MakeRay& make_ray, Front& front, Accumulated& sum) const {
-    if constexpr (!Base::kTakesPlaces) {
-      const Float zero = constant(0.0f);
-      Accumulated part{zero, zero, zero, sum.transmittance};
-      base_.integrate(segment, front, part);
-      const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
-      const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
-      if (hn::AllFalse(kFloat, bright)) {
-        add_usual(part, sum);
-        return;
-      }
-      const auto stretch = make_stretch();
-      add_lit(stretch, make_ray(), find_centroid(segment), bright, part, sum);
+    const Float zero = constant(0.0f);
+    Accumulated part{zero, zero, zero, sum.transmittance};
+    base_.integrate(segment, front, part);
+    const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
+    const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
+    if (hn::AllFalse(kFloat, bright)) {
+      add_usual(part, sum);
+      return;
     }
+    const auto stretch = make_stretch();
+    add_lit(stretch, make_ray(), find_centroid(segment), bright, part, sum);
   }
 
   /// The part of a stretch from `from` to `to`. `front`: at `from`; becomes that at `to`. `depth`: see
@@ -321,7 +319,7 @@ class EffectIntegrator {
     const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
     Segments segment{a.scalar, b.scalar, hn::Mul(stretch.length, part)};
     if (HWY_UNLIKELY(is_weighted())) weigh(stretch, a, b, segment);
-    base_integrate(stretch, a, b, segment, walk.front, sum);
+    base_.integrate(segment, walk.front, sum);
     if (moment) {
       const Float absorbed = hn::Sub(before, sum.transmittance);
       const bool wants_place = is_whole && !hn::AllFalse(kFloat, hn::Gt(absorbed, constant(effects_.faint)));
@@ -334,15 +332,6 @@ class EffectIntegrator {
       const Float ends[2] = {before, sum.transmittance};
       record_depths(*effects_.record, walk.ray.pixels, z, ends);
     }
-  }
-
-  template <class Stretch>
-  HWY_INLINE void base_integrate(const Stretch& stretch, const Cut& a, const Cut& b, const Segments& segment,
-                                 Front& front, Accumulated& sum) const {
-    if constexpr (Base::kTakesPlaces)
-      base_.integrate_between(stretch, a, b, segment.length, sum);
-    else
-      base_.integrate(segment, front, sum);
   }
 
   HWY_INLINE bool is_weighted() const { return effects_.weight_by_change > 0.0f || effects_.weight_by_gradient > 0.0f; }

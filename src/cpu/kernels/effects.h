@@ -9,9 +9,6 @@
 
 namespace tetravox::cpu {
 
-struct DomainTableView;
-struct EnvironmentView;
-
 /// A part of a ray that is drawn, by depth.
 struct ClipInterval {
   float z_near = 0.0f, z_far = 0.0f;
@@ -45,20 +42,13 @@ struct OcclusionMap {
   const float* visibility = nullptr;  ///< [z][y][x][4]: first moments along the world's axes, mean
 };
 
-/// Where light is asked for: a place that a ray passes. For exact shadows.
-using TraceDepth = float (*)(const void* tracer, const float from[3], const LightSource& light);
-
 struct Shading {
   std::span<const LightSource> lights;
-  const EnvironmentView* environment = nullptr;
   const OcclusionMap* occlusion = nullptr;
-  float environment_diffuse = 0.0f, environment_specular = 0.0f;
   float ambient = 0.0f, diffuse = 1.0f, specular = 0.0f, shininess = 1.0f;
   float half_strength = 0.0f;  ///< square of the gradient magnitude at which shading has half its strength
   bool is_two_sided = true;
-  float shadow_bias = 0.0f;    ///< local length by which surfaces are moved towards the light before they are looked up
-  TraceDepth trace = nullptr;  ///< exact shadows: optical depth between a place and a light
-  const void* tracer = nullptr;  ///< its first argument
+  float shadow_bias = 0.0f;  ///< local length by which surfaces are moved towards the light before they are looked up
 };
 
 struct SurfaceSheet {
@@ -88,20 +78,12 @@ struct Effects {
   std::span<const SurfaceSheet> surfaces;  ///< by ascending value
   CentroidView centroid;
   float camera_from_gradient[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row major; into stored scalars a local length
-  const DomainTableView* domain = nullptr;                      ///< instead of the transfer function
-  std::int32_t domain_axes[3] = {};                   ///< of each axis: kScalar, kGradient, or which other field
-  float domain_scale[3] = {}, domain_offset[3] = {};  ///< lattice coordinate = scale * (stored, magnitude) + offset
-  static constexpr std::int32_t kScalar = -2, kGradient = -1;
   float weight_by_change = 0.0f;  ///< extinction is multiplied by that times |scalar change| / world length, at most 1
   float weight_by_gradient = 0.0f;  ///< by that times gradient magnitude (stored scalars a local length), at most 1
   float faint = 0.0f;               ///< opacity that is not worth a normal
   float usual_light = 1.0f;         ///< what it is lit with instead
   float* depth = nullptr;           ///< [height][width] of the picture: see Image::depth; in local lengths from `z_eye`
   const DepthRecord* record = nullptr;
-  bool wants_gradient() const {
-    return shading || weight_by_gradient > 0.0f ||
-           (domain && (domain_axes[0] == kGradient || domain_axes[1] == kGradient || domain_axes[2] == kGradient));
-  }
 };
 
 }  // namespace tetravox::cpu

@@ -17,7 +17,6 @@ namespace HWY_NAMESPACE {
 
 /// For integrators that keep nothing of the front.
 struct WithoutFront {
-  static constexpr bool kTakesPlaces = false;  ///< segments are all they need
   struct Front {};
   HWY_INLINE Front front_at(Float) const { return {}; }
   static HWY_INLINE void replace_front(Mask, const Front&, Front&) {}

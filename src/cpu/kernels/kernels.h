@@ -42,8 +42,6 @@ struct FrameMesh {
   const BoundaryFace* faces = nullptr;  ///< where rays enter: the boundary, then the faces of cells around the eye
   const float* gradients = nullptr;     ///< [vertices][4], or [cells][4] where `has_cell_gradients`; for effects
   bool has_cell_gradients = false;
-  const float* others[2] = {};  ///< further fields, [vertices] or [cells]; for functions of several variables
-  bool is_cell_field[2] = {};
 };
 
 /// What integrators look up; each uses one or two of them.
@@ -156,7 +154,6 @@ struct MarchBrick {
   const float* densities = nullptr;  ///< [z nodes][y nodes][x nodes][4] instead: rho, rho * colour
   const float* constants = nullptr;  ///< [z cells][y cells][x cells] instead, where the scalar is constant in each cell
   const float* gradients = nullptr;  ///< [z nodes][y nodes][x nodes][4], or like `constants`; in grid coordinates
-  const float* others[2] = {};       ///< further fields, like `records` or like `constants`
   bool has_missing = false;          ///< whether a corner is not a number
   float steepness = 0.0f;            ///< largest change of density with the scalar in the brick
 };

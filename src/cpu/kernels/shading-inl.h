@@ -139,19 +139,6 @@ HWY_INLINE Float find_visibility(const Shading& shading, const LightSource& ligh
     const Float side = hn::CopySign(bias, dot(normal, to_light));
     from = sum_of(from, sum_of(scaled(normal, side), scaled(to_light, bias)));
   }
-  if (shading.trace) {
-    HWY_ALIGN float at[3][kLanes], found[kLanes];
-    HWY_ALIGN std::uint32_t wanted[kLanes];
-    hn::Store(from.x, kFloat, at[0]);
-    hn::Store(from.y, kFloat, at[1]);
-    hn::Store(from.z, kFloat, at[2]);
-    hn::Store(hn::IfThenElseZero(uint_mask(place.lanes), hn::Set(kUint, 1)), kUint, wanted);
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      const float start[3] = {at[0][i], at[1][i], at[2][i]};
-      found[i] = wanted[i] ? shading.trace(shading.tracer, start, light) : 0.0f;
-    }
-    return exp_negative(hn::Max(hn::Load(kFloat, found), constant(0.0f)));
-  }
   Float through = constant(1.0f);
   for (const ShadowMap& map : light.shadows) {
     Triple q = transform(map.light_from_camera, 4, from);
@@ -185,8 +172,7 @@ HWY_INLINE Float find_openness(const OcclusionMap& map, const Triple& position, 
 /// Whether the light comes from the eye alone, so that `illuminate_from_eye` serves.
 inline bool is_lit_from_eye(const Shading& shading) {
   return shading.lights.size() == 1 && shading.lights[0].kind == LightSource::Kind::kHeadlight &&
-         shading.is_two_sided && !shading.environment && !shading.occlusion && !shading.trace &&
-         shading.lights[0].shadows.empty();
+         shading.is_two_sided && !shading.occlusion && shading.lights[0].shadows.empty();
 }
 
 /// `illuminate` for that: normal, view and light meet in one cosine, and nothing need be normalised.
@@ -240,7 +226,7 @@ HWY_NOINLINE inline Illumination illuminate(const Shading& shading, const Shaded
     Float specular = hn::Mul(strength, hn::Mul(constant(shading.specular), shine));
     if (!shading.is_two_sided) specular = hn::IfThenElseZero(hn::Gt(cosine, zero), specular);
     Float reaching = one;
-    if (!source.shadows.empty() || shading.trace) reaching = find_visibility(shading, source, place, normal, to_light);
+    if (!source.shadows.empty()) reaching = find_visibility(shading, source, place, normal, to_light);
     const Triple color = scaled(constant_triple(source.color), reaching);
     light.diffuse = sum_of(light.diffuse, scaled(color, hn::Mul(constant(shading.diffuse), diffuse)));
     light.specular = sum_of(light.specular, scaled(color, specular));

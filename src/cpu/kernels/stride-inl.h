@@ -33,14 +33,11 @@ class LatticeSampler {
   }
 
   /// `at`: lattice coordinates. A hair beyond the brick the field goes on as in its last cells.
-  HWY_INLINE Float eval(const Float at[3]) const { return eval_records(records_, at); }
-
-  /// Of any field with a record a cell.
-  HWY_INLINE Float eval_records(const float* records, const Float at[3]) const {
+  HWY_INLINE Float eval(const Float at[3]) const {
     Float cell[3], t[3];
     find_cell(at, cell, t);
     const Uint record = number_of(cell, row_, layer_);
-    const Record low = load_table_records(records, record), high = load_table_records(records + slice_, record);
+    const Record low = load_table_records(records_, record), high = load_table_records(records_ + slice_, record);
     const auto mix_square = [&](const Record& r) { return mixed(t[1], mixed(t[0], r.x, r.y), mixed(t[0], r.z, r.w)); };
     return mixed(t[2], mix_square(low), mix_square(high));
   }

@@ -50,17 +50,6 @@ struct TetrahedronStretch {
     return sum;
   }
 
-  HWY_INLINE Float other(int field, Float u) const {
-    const float* values = mesh.others[field];
-    if (mesh.is_cell_field[field]) return hn::GatherIndex(kFloat, values, hn::BitCast(kInt, cell));
-    Float weights[4];
-    find_weights(u, weights);
-    Float sum = constant(0.0f);
-    for (int k = 0; k < 4; ++k)
-      sum = multiply_add(weights[k], hn::GatherIndex(kFloat, values, hn::BitCast(kInt, k < 3 ? id[k] : d)), sum);
-    return sum;
-  }
-
  private:
   /// Barycentric coordinates of a place for a, b, c, d.
   HWY_INLINE void find_weights(Float u, Float weights[4]) const {
