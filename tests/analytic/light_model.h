@@ -49,8 +49,7 @@ inline Illumination illuminate(const Lighting& lighting, const Vector3& directio
     if (!lighting.is_two_sided && cosine <= 0.0) shine = 0.0;
     const double reaching = light.intensity * (visibility ? visibility(light, place) : 1.0);
     for (int k = 0; k < 3; ++k) {
-      result.diffuse[k] +=
-          light.color[k] * reaching * material.diffuse * (1.0 - strength + strength * facing(cosine));
+      result.diffuse[k] += light.color[k] * reaching * material.diffuse * (1.0 - strength + strength * facing(cosine));
       result.specular[k] += light.color[k] * reaching * material.specular * strength * shine;
     }
   }

@@ -157,14 +157,16 @@ TEST_P(Clipped, TwelveShellsLeaveManyPieces) {
   expect_beer(slabs);
   Clipping holes;
   for (int i = 0; i < 12; ++i)
-    holes.shapes.push_back({ClipSphere{{0.7 * std::sin(2.1 * i), 0.7 * std::cos(1.3 * i), -0.9 + 0.16 * i}, 0.3},
-                            false});
+    holes.shapes.push_back(
+        {ClipSphere{{0.7 * std::sin(2.1 * i), 0.7 * std::cos(1.3 * i), -0.9 + 0.16 * i}, 0.3}, false});
   expect_beer(holes);
 }
 
 TEST_P(Clipped, ShapesAtRandom) {
   std::mt19937 random(7);
-  const auto draw = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
+  const auto draw = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+  };
   const auto place = [&](double reach) {
     const double x = draw(-reach, reach), y = draw(-reach, reach), z = draw(-reach, reach);
     return Vector3{x, y, z};

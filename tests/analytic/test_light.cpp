@@ -84,23 +84,21 @@ TEST_P(Lit, LinearFieldHasTheModelsLight) {
       settings.lighting.is_two_sided = is_two_sided;
       const double half = threshold * range / tests::diagonal_of(body.bounds());
       const double g = norm(kSlope), strength = g * g / (g * g + half * half);
-      expect_shown(
-          body, kHomogeneous, settings,
-          [&](const Ray& ray) {
-            return integrate_lit(ray, intersect_box(ray, kLower, kUpper), kColor, [&](const Vector3& place) {
-              return illuminate(settings.lighting, ray.direction, place, kSlope, strength);
-            });
-          },
-          {2e-4, 1e-5});
+      expect_shown(body, kHomogeneous, settings,
+                   [&](const Ray& ray) {
+                     return integrate_lit(ray, intersect_box(ray, kLower, kUpper), kColor, [&](const Vector3& place) {
+                       return illuminate(settings.lighting, ray.direction, place, kSlope, strength);
+                     });
+                   },
+                   {2e-4, 1e-5});
     }
   }
 }
 
 TEST_P(Lit, EveryGradientMethodFindsALinearFieldsSlope) {
   const tests::Body body = cube(9, linear_field);
-  const std::vector<GradientMethod> methods =
-      is_grid() ? std::vector{GradientMethod::kFilter, GradientMethod::kCentral}
-                : std::vector{GradientMethod::kVertex, GradientMethod::kCell};
+  const std::vector<GradientMethod> methods = is_grid() ? std::vector{GradientMethod::kFilter, GradientMethod::kCentral}
+                                                        : std::vector{GradientMethod::kVertex, GradientMethod::kCell};
   RenderSettings settings = make_settings(1e-5);
   settings.lighting = make_lights();
   const Camera camera = standard_cameras()[0].second;
@@ -124,18 +122,17 @@ TEST_P(Lit, SphereHasTheModelsLight) {
     return Chord{std::max(0.0, nearest - half), std::max(0.0, nearest + half)};
   };
   for (const auto& field : {tests::Field(norm), tests::Field(square_norm)}) {
-    expect_shown(
-        cube(is_grid() ? 48 : 32, field), kHomogeneous, settings,
-        [&](const Ray& ray) {
-          const auto light_at = [&](const Vector3& place) {
-            return illuminate(settings.lighting, ray.direction, place, place, 1.0);
-          };
-          const Chord whole = chord_of(ray, radius), hole = chord_of(ray, inner);
-          if (hole.length() == 0.0) return integrate_lit(ray, whole, kColor, light_at);
-          return over(integrate_lit(ray, {whole.near, hole.near}, kColor, light_at),
-                      integrate_lit(ray, {hole.far, whole.far}, kColor, light_at));
-        },
-        {2e-3, 2e-5});
+    expect_shown(cube(is_grid() ? 48 : 32, field), kHomogeneous, settings,
+                 [&](const Ray& ray) {
+                   const auto light_at = [&](const Vector3& place) {
+                     return illuminate(settings.lighting, ray.direction, place, place, 1.0);
+                   };
+                   const Chord whole = chord_of(ray, radius), hole = chord_of(ray, inner);
+                   if (hole.length() == 0.0) return integrate_lit(ray, whole, kColor, light_at);
+                   return over(integrate_lit(ray, {whole.near, hole.near}, kColor, light_at),
+                               integrate_lit(ray, {hole.far, whole.far}, kColor, light_at));
+                 },
+                 {2e-3, 2e-5});
   }
 }
 
@@ -288,15 +285,14 @@ TEST_P(Lit, OpacityFollowsTheScalarsChange) {
     for (const double scale : {0.1, 0.4, 2.0}) {  // some, many, all rays at full weight
       settings.opacity_weight = kind;
       settings.opacity_weight_scale = scale;
-      expect_shown(
-          body, kHomogeneous, settings,
-          [&](const Ray& ray) {
-            const double rate =
-                kind == OpacityWeight::kGradient ? norm(kSlope) : std::abs(dot(kSlope, ray.direction));
-            const double weight = std::min(1.0, scale * rate * unit);
-            return fill(kColor, kExtinction * weight * intersect_box(ray, kLower, kUpper).length());
-          },
-          {3e-5, 3e-5});
+      expect_shown(body, kHomogeneous, settings,
+                   [&](const Ray& ray) {
+                     const double rate =
+                         kind == OpacityWeight::kGradient ? norm(kSlope) : std::abs(dot(kSlope, ray.direction));
+                     const double weight = std::min(1.0, scale * rate * unit);
+                     return fill(kColor, kExtinction * weight * intersect_box(ray, kLower, kUpper).length());
+                   },
+                   {3e-5, 3e-5});
     }
 }
 

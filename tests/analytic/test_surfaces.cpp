@@ -170,7 +170,7 @@ TEST_P(Surfaces, OneSidedSurfacesAreSeenWhereTheFieldRises) {
   }
 }
 
-/// No transparent pixel inside: each must have a covered neighbour missing in its 3 x 3 pixels.
+/// No transparent pixel among eight that are covered.
 void expect_no_pin_holes(const Image& image, const std::string& name) {
   int covered = 0;
   for (int y = 1; y + 1 < image.height; ++y)
@@ -180,8 +180,7 @@ void expect_no_pin_holes(const Image& image, const std::string& name) {
         for (int i = -1; i <= 1; ++i)
           if (i != 0 || j != 0) around += image.pixel(x + i, y + j)[3] > 0.999f;
       covered += image.pixel(x, y)[3] > 0.999f;
-      if (around == 8) EXPECT_GT(image.pixel(x, y)[3], 0.999f) << name << " pixel " << x << ", " << y;
-      if (around == 0) EXPECT_LT(image.pixel(x, y)[3], 0.001f) << name << " alone: pixel " << x << ", " << y;
+      EXPECT_TRUE(around < 8 || image.pixel(x, y)[3] > 0.999f) << name << " pixel " << x << ", " << y;
     }
   EXPECT_GT(covered, image.width * image.height / 20) << name;
 }
@@ -191,7 +190,7 @@ TEST_P(Surfaces, SmoothFieldsHaveNoPinHoles) {
   const tests::Field waves = tests::make_random_field(5, 2.0);
   const tests::Body body = cube(is_grid() ? 37 : 18, [&](const Vector3& p) { return norm(p) + 0.25 * waves(p); });
   std::mt19937 random(3);
-  const auto draw = [&] { return 2.0 * (random() / 4294967296.0) - 1.0; };
+  const auto draw = [&] { return 2.0 * (static_cast<double>(random()) / 4294967296.0) - 1.0; };
   for (int round = 0; round < 40; ++round) {
     Camera camera;
     const Vector3 towards{draw(), draw(), draw()};
@@ -236,9 +235,8 @@ Rgba composite_sheets(const LinearField& field, const std::vector<Isosurface>& s
     from = t;
     const double opacity = rate > 0.0 || surface->is_two_sided ? surface->opacity : 0.0;
     const Color& color = rate > 0.0 ? surface->front_color : surface->back_color;
-    const Color lit = lighting.is_lit()
-                          ? illuminate(lighting, ray.direction, ray.at(t), field.slope, 1.0).apply(color)
-                          : color;
+    const Color lit =
+        lighting.is_lit() ? illuminate(lighting, ray.direction, ray.at(t), field.slope, 1.0).apply(color) : color;
     result = over(result, {opacity * lit[0], opacity * lit[1], opacity * lit[2], opacity});
   }
   return over(result, volume(from, chord.far));
@@ -258,9 +256,9 @@ TEST_P(Surfaces, SheetsAndVolumeAreCompositedInOrder) {
     settings.samples = 256;
     settings.surfaces = two_sheets(0.43, 0.61);
     settings.surfaces.push_back({0.5, {1, 1, 1}, {1, 1, 1}, 0.5, false});
-    expect_shown(
-        cube(7, field), kRising, settings,
-        [&](const Ray& ray) { return composite_sheets(field, settings.surfaces, {}, kRising, ray); }, {2e-5, 2e-5});
+    expect_shown(cube(7, field), kRising, settings,
+                 [&](const Ray& ray) { return composite_sheets(field, settings.surfaces, {}, kRising, ray); },
+                 {2e-5, 2e-5});
   }
 }
 
@@ -270,9 +268,9 @@ TEST_P(Surfaces, SheetsInTheLatticesPlanesAreMetOnce) {
   RenderSettings settings = make_settings(61, 43);
   settings.surfaces = two_sheets(0.4375, 0.625);
   for (const int cells : {8, 24})
-    expect_shown(
-        cube(cells, field), kRising, settings,
-        [&](const Ray& ray) { return composite_sheets(field, settings.surfaces, {}, kRising, ray); }, {2e-5, 2e-5});
+    expect_shown(cube(cells, field), kRising, settings,
+                 [&](const Ray& ray) { return composite_sheets(field, settings.surfaces, {}, kRising, ray); },
+                 {2e-5, 2e-5});
 }
 
 TEST_P(Surfaces, SheetsInDiagonalPlanesOfTheLatticeAreMetOnce) {
@@ -280,9 +278,9 @@ TEST_P(Surfaces, SheetsInDiagonalPlanesOfTheLatticeAreMetOnce) {
   const LinearField field{0.5, {0.125, 0.125, 0.125}};
   RenderSettings settings = make_settings(61, 43);
   settings.surfaces = two_sheets(0.4375, 0.625);
-  expect_shown(
-      cube(8, field), kRising, settings,
-      [&](const Ray& ray) { return composite_sheets(field, settings.surfaces, {}, kRising, ray); }, {2e-5, 2e-5});
+  expect_shown(cube(8, field), kRising, settings,
+               [&](const Ray& ray) { return composite_sheets(field, settings.surfaces, {}, kRising, ray); },
+               {2e-5, 2e-5});
 }
 
 TEST_P(Surfaces, SurfacesOfOneValueLieOnEachOther) {
@@ -290,9 +288,9 @@ TEST_P(Surfaces, SurfacesOfOneValueLieOnEachOther) {
   RenderSettings settings = make_settings(61, 43);
   settings.surfaces = two_sheets(0.5, 0.5);
   for (Isosurface& surface : settings.surfaces) surface.front_color = surface.back_color = {0.3, 0.3, 0.3};
-  expect_shown(
-      cube(7, field), kNothing, settings,
-      [&](const Ray& ray) { return composite_sheets(field, settings.surfaces, {}, kNothing, ray); }, {2e-5, 2e-5});
+  expect_shown(cube(7, field), kNothing, settings,
+               [&](const Ray& ray) { return composite_sheets(field, settings.surfaces, {}, kNothing, ray); },
+               {2e-5, 2e-5});
 }
 
 TEST_P(Surfaces, LitSheetsHaveTheirClosedForm) {
@@ -315,18 +313,17 @@ TEST_P(Surfaces, ClippedSurfacesAreMetInsideAlone) {
   settings.surfaces = two_sheets(0.43, 0.61);
   const ClipSphere sphere{{0.1, 0, 0.05}, 0.8};
   settings.clipping.shapes = {{sphere, true}};
-  expect_shown(
-      cube(7, field), kNothing, settings,
-      [&](const Ray& ray) {
-        const double rate = dot(field.slope, ray.direction), at_eye = field(ray.origin);
-        std::vector<Isosurface> met;
-        for (const Isosurface& surface : settings.surfaces) {
-          const Vector3 place = ray.at((surface.value - at_eye) / rate);
-          if (norm(difference(place, sphere.center)) < sphere.radius) met.push_back(surface);
-        }
-        return composite_sheets(field, met, {}, kNothing, ray);
-      },
-      {2e-5, 2e-5});
+  expect_shown(cube(7, field), kNothing, settings,
+               [&](const Ray& ray) {
+                 const double rate = dot(field.slope, ray.direction), at_eye = field(ray.origin);
+                 std::vector<Isosurface> met;
+                 for (const Isosurface& surface : settings.surfaces) {
+                   const Vector3 place = ray.at((surface.value - at_eye) / rate);
+                   if (norm(difference(place, sphere.center)) < sphere.radius) met.push_back(surface);
+                 }
+                 return composite_sheets(field, met, {}, kNothing, ray);
+               },
+               {2e-5, 2e-5});
 }
 
 TEST_P(Surfaces, DepthIsWhereTheVolumesOpacityPassesOneHalf) {
@@ -342,9 +339,11 @@ TEST_P(Surfaces, DepthIsWhereTheVolumesOpacityPassesOneHalf) {
         const Chord chord = intersect_box(ray, kLower, kUpper);
         const double depth = image.depth[static_cast<std::size_t>(y * image.width + x)];
         const double needed = std::log(2.0) / 1.7;
-        if (chord.length() < needed - 1e-4) ASSERT_EQ(depth, std::numeric_limits<double>::infinity()) << name;
-        if (chord.length() > needed + 1e-4)
-          ASSERT_NEAR(depth, axial_depth(camera, ray, chord.near + needed), 2e-5) << name << " " << x << ", " << y;
+        if (std::abs(chord.length() - needed) < 1e-4) continue;
+        if (chord.length() > needed)
+          EXPECT_NEAR(depth, axial_depth(camera, ray, chord.near + needed), 2e-5) << name << " " << x << ", " << y;
+        else
+          EXPECT_EQ(depth, std::numeric_limits<double>::infinity()) << name << " " << x << ", " << y;
       }
   }
 }
