@@ -62,13 +62,12 @@ Rgba over(const Rgba& front, const Rgba& back) {
   return result;
 }
 
-Rgba integrate(double length, const std::function<Medium(double)>& medium_at) {
-  constexpr int kSteps = 2000;
+Rgba integrate(double length, const std::function<Medium(double)>& medium_at, int steps) {
   Rgba result{};
   double depth = 0.0;
-  for (int i = 0; i < kSteps; ++i) {
-    const Medium medium = medium_at((i + 0.5) / kSteps);
-    const double step = medium.extinction * length / kSteps;
+  for (int i = 0; i < steps; ++i) {
+    const Medium medium = medium_at((i + 0.5) / steps);
+    const double step = medium.extinction * length / steps;
     const double weight = std::exp(-depth) * -std::expm1(-step);
     for (int k = 0; k < 3; ++k) result[k] += weight * medium.color[k];
     depth += step;
