@@ -15,6 +15,12 @@ green="--resolution 250,250 --transfer-function docs/methods/random-green.json $
 shells="--resolution 180,180 --transfer-function rainbow:peaks=4 --unit-distance 0.5 $atom 18"
 waves='--resolution 190,190 --transfer-function coolwarm:peaks=1 --range 0,1 --unit-distance 0.012 --camera-position -1.9,-3,4.6 --camera-focal-point 0,0,-0.05 --camera-view-up 0,0,1 --camera-view-angle 22'
 
+# Of docs/methods/light.md: each on a mesh and on a grid.
+mesh="builtin:buckyball?cells=500000 --resolution 300,300 $ball 23"
+grid='builtin:marschner-lobb?size=96 --resolution 300,300 --filter bspline-interpolating'
+side='--lights directional:-1,0.6,-1.2 --shadows volume'
+white='0.85,0.8,0.7'
+
 # Each line: set, picture, what `tetravox render` is given (or `tetravox histogram`, where that word comes first).
 pictures="
 demo     buckyball         builtin:buckyball?cells=2000000 --transfer-function inferno:peaks=4 --range 0.05,1.04 --unit-distance 0.016 $ball 23
@@ -50,6 +56,22 @@ methods  waves-interpolating builtin:marschner-lobb $waves --filter bspline-inte
 methods  waves-catmull-rom builtin:marschner-lobb $waves --filter catmull-rom
 methods  waves-mitchell    builtin:marschner-lobb $waves --filter mitchell
 methods  waves-lanczos     builtin:marschner-lobb $waves --filter lanczos=4
+methods  light-mesh        $mesh --transfer-function viridis:peaks=3 --range 0.1,1.04 --unit-distance 0.01 --shade
+methods  unlit-mesh        $mesh --transfer-function viridis:peaks=3 --range 0.1,1.04 --unit-distance 0.01
+methods  light-grid        $grid --transfer-function plasma:peaks=1 --range 0,1 --unit-distance 0.006 --shade
+methods  unlit-grid        $grid --transfer-function plasma:peaks=1 --range 0,1 --unit-distance 0.006
+methods  surface-mesh      $mesh --isosurface 0.45:$white --volume off
+methods  surface-grid      $grid --isosurface 0.5:$white --volume off
+methods  nested-mesh       $mesh --isosurface 0.15:0.3,0.5,0.9:0.35 --isosurface 0.7:0.9,0.5,0.2 --volume off
+methods  nested-grid       builtin:hydrogen?size=64&type=float32 --resolution 300,300 $atom 19 --isosurface 0.05:0.3,0.5,0.9:0.35 --isosurface 0.3:0.9,0.5,0.2 --volume off
+methods  shadow-mesh       $mesh --isosurface 0.45:$white --volume off $side
+methods  shadow-grid       $grid --isosurface 0.5:$white --volume off $side
+methods  open-mesh         $mesh --isosurface 0.45:$white --volume off --ambient-occlusion 64 --material 0.7,0.3,0.1,32
+methods  open-grid         $grid --isosurface 0.5:$white --volume off --ambient-occlusion 64 --material 0.7,0.3,0.1,32
+methods  clip-mesh         $mesh --isosurface 0.45 --transfer-function inferno:peaks=4 --range 0.05,1.04 --unit-distance 0.016 --clip-plane 0,0,0,-0.5,1,0.2
+methods  clip-grid         builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 --transfer-function viridis:peaks=5 --range 0.3,0.9 --unit-distance 0.003 --shade --clip-sphere outside:0.5,0.2,0.8,0.45
+methods  weight-mesh       builtin:duct?cells=300000 --array speed --resolution 300,300 --transfer-function turbo:constant=0.5 $above 33 --opacity-weight scalar-difference --opacity-weight-scale 0.2
+methods  weight-grid       builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 --filter bspline --transfer-function viridis:constant=0.3 --opacity-weight gradient --opacity-weight-scale 0.1
 methods  boundaries-default builtin:buckyball?cells=500000 --resolution 320,320 $ball 23
 methods  boundaries        builtin:buckyball?cells=500000 --resolution 320,320 --transfer-function auto:boundaries $ball 23
 methods  boundaries-thick  builtin:buckyball?cells=500000 --resolution 320,320 --transfer-function auto:boundaries=1.5 $ball 23

@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
 
-/// What a vector of rays passes in trilinear cells (see effects-inl.h): a cubic of the scalar.
+/// What a vector of rays passes in trilinear cells (see stretches-inl.h): a cubic of the scalar.
 struct CellStretch {
   static constexpr bool kIsLinear = false;
 

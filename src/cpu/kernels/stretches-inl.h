@@ -1,0 +1,109 @@
+// Stretches of rays: what effects are asked for.
+//
+// A source hands over stretches: what a vector of rays passes in its cells, u from 0 at the front to 1 at the back.
+// A stretch offers
+//   Float scalar_front, scalar_back, z_front, z_back, length   length in world units, 0 where a ray takes no part
+//   Float scalar(Float u)                                      strictly inside
+//   static constexpr bool kIsLinear; and where it is not: void find_extrema(Float extrema[2]); Float bend(),
+//   slope(Float u) Float count_pieces(from, to, transmittance)                linear pieces that the tolerance asks for
+//   Triple gradient(Float u)
+
+#if defined(TETRAVOX_CPU_STRETCHES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETRAVOX_CPU_STRETCHES_INL
+#undef TETRAVOX_CPU_STRETCHES_INL
+#else
+#define TETRAVOX_CPU_STRETCHES_INL
+#endif
+
+#include "src/cpu/kernels/effects.h"
+#include "src/cpu/kernels/segments-inl.h"
+#include "src/cpu/kernels/shading-inl.h"
+#include "src/cpu/kernels/vector_math-inl.h"
+
+#include <cmath>
+
+HWY_BEFORE_NAMESPACE();
+namespace tetravox::cpu {
+namespace HWY_NAMESPACE {
+
+/// A vector of rays in the camera frame (see RayGrid), and the pixels they belong to.
+struct RayView {
+  Float x_offset, x_slope, y_offset, y_slope;
+  const std::int32_t* pixels = nullptr;  ///< [kLanes] row * width + column
+
+  HWY_INLINE Triple position(Float z) const {
+    return {multiply_add(x_slope, z, x_offset), multiply_add(y_slope, z, y_offset), z};
+  }
+  HWY_INLINE Triple direction() const { return {x_slope, y_slope, constant(1.0f)}; }
+  HWY_INLINE Triple to_eye() const {
+    const Float minus = constant(-1.0f);
+    return normalized({hn::Mul(x_slope, minus), hn::Mul(y_slope, minus), minus});
+  }
+};
+
+/// A place on a stretch.
+struct Cut {
+  Float u, scalar;
+};
+
+template <class Stretch>
+HWY_INLINE Cut cut_at(const Stretch& stretch, Float u) {
+  const Float inside = stretch.scalar(u);
+  const Float after = hn::IfThenElse(hn::Ge(u, constant(1.0f)), stretch.scalar_back, inside);
+  return {u, hn::IfThenElse(hn::Le(u, constant(0.0f)), stretch.scalar_front, after)};
+}
+
+template <class Stretch>
+HWY_INLINE Float depth_at(const Stretch& stretch, Float u) {
+  return multiply_add(u, hn::Sub(stretch.z_back, stretch.z_front), stretch.z_front);
+}
+
+/// Writes down optical depths at the slices between two depths.
+HWY_NOINLINE inline void record_depths(const DepthRecord& record, const std::int32_t* pixels, const Float z[2],
+                                       const Float transmittance[2]) {
+  HWY_ALIGN float places[2][kLanes], depths[2][kLanes];
+  for (int end = 0; end < 2; ++end) {
+    const Float slice = hn::Mul(hn::Sub(z[end], constant(record.z_first)), constant(record.slices_per_z));
+    hn::Store(slice, kFloat, places[end]);
+    const Float log = log2_positive(hn::Max(transmittance[end], constant(1e-30f)));
+    hn::Store(hn::Mul(log, constant(-0.69314718f)), kFloat, depths[end]);
+  }
+  const std::size_t slice_size = static_cast<std::size_t>(record.width) * record.height;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const float begin = places[0][i], end = std::fmin(places[1][i], static_cast<float>(record.slices - 1));
+    if (!(end > begin)) continue;
+    for (float slice = std::fmax(std::floor(begin) + 1.0f, 0.0f); slice <= end; slice += 1.0f) {
+      const float t = (slice - begin) / (places[1][i] - begin);
+      record.depths[static_cast<std::size_t>(slice) * slice_size + static_cast<std::size_t>(pixels[i])] =
+          depths[0][i] + t * (depths[1][i] - depths[0][i]);
+    }
+  }
+}
+
+/// Where in a segment, from 0 to 1, its extinction has its centre.
+HWY_INLINE Float find_centroid(const CentroidView& table, const Segments& segment) {
+  const Float half = constant(0.5f), one = constant(1.0f), zero = constant(0.0f);
+  if (table.last_node == 0) return half;
+  const auto node_of = [&](Float scalar) {
+    const Float at = hn::Mul(hn::Sub(scalar, constant(table.first)), constant(table.nodes_per_scalar));
+    return hn::NearestInt(hn::Min(hn::Max(at, zero), constant(static_cast<float>(table.last_node))));
+  };
+  const Int front = node_of(segment.scalar_front), back = node_of(segment.scalar_back);
+  const Record before = load_table_records(table.sums, hn::BitCast(kUint, front));
+  const Record after = load_table_records(table.sums, hn::BitCast(kUint, back));
+  const auto difference = [](Float a, Float b) {
+    return hn::ConvertTo(kFloat, hn::Sub(hn::BitCast(kInt, b), hn::BitCast(kInt, a)));
+  };
+  const Float total = difference(before.x, after.x), nodes = hn::ConvertTo(kFloat, hn::Sub(back, front));
+  const Mask empty = hn::Or(hn::Eq(total, zero), hn::Eq(nodes, zero));
+  const Float moment = hn::Mul(difference(before.y, after.y), constant(static_cast<float>(table.last_node)));
+  const Float center = hn::Div(moment, hn::IfThenElse(empty, one, total));
+  const Float t = hn::Div(hn::Sub(center, hn::ConvertTo(kFloat, front)), hn::IfThenElse(empty, one, nodes));
+  return hn::IfThenElse(empty, half, hn::Min(hn::Max(t, zero), one));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetravox::cpu
+HWY_AFTER_NAMESPACE();
+
+#endif
