@@ -234,6 +234,7 @@ class Walker : WalkLanes {
     const Float zero = constant(0.0f), one = constant(1.0f);
     const Float depth = hn::Sub(z_back, s.z_front);
     const Float inverse = hn::Div(one, hn::IfThenElse(hn::Gt(depth, zero), depth, one));
+    Mask taking = s.alive;  // first all rays, then those with a further interval here
     for (;;) {
       const Float near = hn::Load(kFloat, lanes_.z_near), far = hn::Load(kFloat, lanes_.z_far);
       const Mask cuts_front = hn::Gt(near, s.z_front), cuts_back = hn::Lt(far, z_back);
@@ -244,8 +245,10 @@ class Walker : WalkLanes {
       const Float to = hn::Max(hn::IfThenElse(cuts_back, place_of(far), one), from);
       const Float begin = multiply_add(from, hn::Sub(segment.scalar_back, segment.scalar_front), segment.scalar_front);
       s.front = integrator_.front_at(begin);
-      integrate(from, to, hn::Sub(to, from));
-      if (!leave_intervals(s, hn::And(s.alive, cuts_back), z_back)) break;
+      integrate(from, to, hn::IfThenElseZero(taking, hn::Sub(to, from)));
+      taking = hn::And(taking, cuts_back);
+      if (!leave_intervals(s, taking, z_back)) break;
+      taking = hn::And(taking, s.alive);
     }
     s.front = integrator_.front_at(segment.scalar_back);
   }
