@@ -335,5 +335,26 @@ TEST_F(Images, TextFilesAppearWhole) {
   EXPECT_GT(available_memory(), 1u << 20);
 }
 
+TEST(Depth, IsWrittenAsItIs) {
+  const std::filesystem::path directory = std::filesystem::temp_directory_path() / "tetravox-depth";
+  std::filesystem::create_directories(directory);
+  Image image{2, 1, std::vector<float>(8), {1.5f, INFINITY}};
+  write_depth((directory / "a.npy").string(), image);
+  std::ifstream file(directory / "a.npy", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  ASSERT_EQ(bytes.size(), 128u + 8u);
+  EXPECT_NE(bytes.find("(1, 2)"), std::string::npos);
+  float depths[2];
+  std::memcpy(depths, bytes.data() + 128, sizeof depths);
+  EXPECT_EQ(depths[0], 1.5f);
+  EXPECT_EQ(depths[1], INFINITY);
+  write_depth((directory / "a.exr").string(), image);
+  EXPECT_GT(std::filesystem::file_size(directory / "a.exr"), 100u);
+  EXPECT_THROW(write_depth((directory / "a.png").string(), image), Error);
+  image.depth.clear();
+  EXPECT_THROW(write_depth((directory / "a.npy").string(), image), Error);
+  std::filesystem::remove_all(directory);
+}
+
 }  // namespace
 }  // namespace tetravox
