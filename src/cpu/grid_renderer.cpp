@@ -93,7 +93,7 @@ class TileIntervals {
         find_intervals(clip,
                        {grid.column_offset[column + x], grid.column_slope[column + x], grid.row_offset[row + y],
                         grid.row_slope[row + y], grid.z_near, std::numeric_limits<double>::infinity()},
-                       intervals_);
+                       scratch_, intervals_);
         end_[ray] = intervals_.size();
         rays.has_intervals |= end_[ray] > next_[ray] + 1;
         if (!advance(ray, rays)) rays.z_far[ray] = kNothing;
@@ -126,6 +126,7 @@ class TileIntervals {
     return true;
   }
 
+  ClipScratch scratch_;
   std::vector<ClipInterval> intervals_;
   std::vector<std::size_t> next_, end_;  // of each ray
 };

@@ -51,18 +51,19 @@ auto choose_illustrated_walk(const Kernels& kernels, Association association, In
 }
 
 /// Finds the parts of the rays that the clipping keeps, and leaves out rays of which it keeps none.
-void clip_rays(const ClipScene& clip, const RayGrid& grid, std::vector<ClipInterval>& scratch, TileRays& tile) {
+void clip_rays(const ClipScene& clip, const RayGrid& grid, ClipScratch& scratch, std::vector<ClipInterval>& found,
+               TileRays& tile) {
   tile.clips.clear();
   std::erase_if(tile.rays, [&](TileRays::Ray& ray) {
-    scratch.clear();
+    found.clear();
     find_intervals(clip,
                    {grid.column_offset[ray.column], grid.column_slope[ray.column], grid.row_offset[ray.row],
                     grid.row_slope[ray.row], grid.z_near, std::numeric_limits<double>::infinity()},
-                   scratch);
+                   scratch, found);
     ray.clip_begin = static_cast<std::uint32_t>(tile.clips.size());
-    tile.clips.insert(tile.clips.end(), scratch.begin(), scratch.end());
+    tile.clips.insert(tile.clips.end(), found.begin(), found.end());
     ray.clip_end = static_cast<std::uint32_t>(tile.clips.size());
-    return scratch.empty();
+    return found.empty();
   });
 }
 
@@ -244,6 +245,7 @@ void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
                                          world_from_camera(frame.camera, mesh_.origin, mesh_.world_per_local));
   std::atomic<std::uint64_t> segments{0}, stopped_rays{0}, rays{0};
   tbb::enumerable_thread_specific<TileScratch> scratches;
+  tbb::enumerable_thread_specific<ClipScratch> clip_scratch;
   TileProgress tile_progress(context.progress, frame.bins.tile_count());
   support::parallel_chunks(frame.bins.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
     TileScratch& scratch = scratches.local();
@@ -252,7 +254,8 @@ void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
       if (!frame.bins.faces_of(tile).empty()) {
         collect_rays(kernels, frame.mesh, frame.rays.grid, frame.bins, tile, frame.first_eye_face,
                      frame.camera.is_orthographic, scratch);
-        if (!settings.clipping.shapes.empty()) clip_rays(clip, frame.rays.grid, scratch.intervals, scratch.rays);
+        if (!settings.clipping.shapes.empty())
+          clip_rays(clip, frame.rays.grid, clip_scratch.local(), scratch.intervals, scratch.rays);
         const WalkStatistics walked = walk({&frame.mesh, &frame.rays.grid, &tables, &scratch.rays, image.pixels.data(),
                                             settings.use_early_ray_termination, context.progress.cancelled});
         segments += walked.segments;
