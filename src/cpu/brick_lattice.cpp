@@ -244,6 +244,20 @@ void BrickLattice::fill_gradients(const LatticeField& field, const grid::Block& 
   brick.gradients = gradients_.data();
 }
 
+/// Pre-classification with a kernel: it is the densities of the values that are filtered, channel by channel.
+void BrickLattice::filter_densities(const LatticeField& field, MarchBrick& brick) {
+  constexpr int kParts = 4;
+  read_margin(field);
+  const std::vector<float> scalars = margin_;
+  for (std::size_t channel = 0; channel < 4; ++channel) {
+    for (std::size_t i = 0; i < scalars.size(); ++i)
+      margin_[i] = optics::eval_densities(*field.points, scalars[i])[channel];
+    divide_cells(field, kParts, brick);
+    if (channel == 0) records_.assign(4 * (values_.size() + nodes_beyond(brick)), 0.0f);
+    for (std::size_t i = 0; i < values_.size(); ++i) records_[4 * i + channel] = values_[i];
+  }
+}
+
 /// `weights`: for each axis, [parts][taps].
 void BrickLattice::convolve(const std::array<const std::vector<float>*, 3>& weights, int parts,
                             std::vector<float>& nodes) {
