@@ -110,7 +110,7 @@ class TileIntervals {
     bool is_any_moved = false;
     for (int i = 0; i < rays.ended_count; ++i) {
       const auto ray = static_cast<std::size_t>(rays.ended[i]);
-      is_any_moved |= rays.z_far[ray] > rays.z_near[ray] && advance(ray, rays);
+      is_any_moved |= rays.z_far[ray] >= rays.z_near[ray] && advance(ray, rays);
     }
     return is_any_moved;
   }

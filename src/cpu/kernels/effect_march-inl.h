@@ -244,7 +244,11 @@ class EffectMarcher {
         scalar_front = cubic.c0;
         front = integrator_.front_at(scalar_front);
       }
-      const Float scalar_back = cubic.back();
+      // Where a ray only touches a cell, rounding decides which one it is: what it says of the scalar must not count.
+      const Float least = hn::Mul(constant(kRoundedDepth), hn::Max(hn::Abs(back), constant(1.0f)));
+      const Mask touches = hn::Le(hn::Sub(back, rays.front), least);
+      const Float scalar_back = hn::IfThenElse(touches, scalar_front, cubic.back());
+      length = hn::IfThenZeroElse(touches, length);
       const CellStretch stretch{scalar_front, scalar_back, rays.front, back, length, job_, rays, corners, cubic};
       integrator_.integrate_stretch(stretch, passing.view, constant(0.0f), constant(1.0f), front, sum, passing.depth);
       scalar_front = scalar_back;
