@@ -254,7 +254,7 @@ class EffectMarcher {
       scalar_front = scalar_back;
       passing.z_left = hn::IfThenElse(rays.alive, back, passing.z_left);
       passing.scalar_left = hn::IfThenElse(rays.alive, scalar_back, passing.scalar_left);
-      rays.advance(back);
+      rays.template advance<true>(back);  // a wrong cell may hold surfaces
     }
     store_accumulated(sum, job_, first, count);
   }

@@ -223,16 +223,24 @@ class EffectIntegrator {
       integrate_pieces(walk, begin, end, walk.sum, nullptr);
   }
 
-  /// Adds linear pieces to `sum`. `moment`: becomes what they absorb times where that is, if it is asked for.
+  /// Where pieces absorb.
+  struct Emission {
+    Float moment = constant(0.0f);  ///< sum over the pieces: what it absorbs times where that is
+    Float place = constant(0.5f);   ///< where that is, of rays with a single piece
+    Mask is_single = hn::FirstN(kFloat, kLanes);
+  };
+
+  /// Adds linear pieces to `sum`, and says where they absorb, if that is asked for. What one ray is given does not
+  /// depend on those beside it.
   template <class Stretch>
   HWY_NOINLINE void integrate_pieces(const Walk<Stretch>& walk, const Cut& begin, const Cut& end, Accumulated& sum,
-                                     Float* moment) const {
+                                     Emission* emission) const {
     if constexpr (Stretch::kIsLinear) {
-      integrate_piece(walk, begin, end, true, sum, moment);
+      integrate_piece(walk, begin, end, sum, emission);
     } else {
       const Float pieces = walk.stretch.count_pieces(begin, end, sum.transmittance);
       const Float share = hn::Div(hn::Sub(end.u, begin.u), pieces);
-      const bool is_whole = hn::AllTrue(kFloat, hn::Le(pieces, constant(1.0f)));
+      if (emission) emission->is_single = hn::Le(pieces, constant(1.0f));
       Cut at = begin;
       for (Float number = constant(1.0f);; number = hn::Add(number, constant(1.0f))) {
         const Mask last = hn::Ge(number, pieces);
@@ -241,28 +249,32 @@ class EffectIntegrator {
           next = cut_at(walk.stretch, multiply_add(number, share, begin.u));
           next = {hn::IfThenElse(last, end.u, next.u), hn::IfThenElse(last, end.scalar, next.scalar)};
         }
-        integrate_piece(walk, at, next, is_whole, sum, moment);
+        integrate_piece(walk, at, next, sum, emission);
         if (hn::AllTrue(kFloat, last)) return;
         at = next;
       }
     }
   }
 
-  /// One linear piece. Where its emission lies is looked up for a `is_whole` part, which it is the only piece of.
+  /// One linear piece. Where its emission lies is looked up if it is the only one.
   template <class Stretch>
-  HWY_INLINE void integrate_piece(const Walk<Stretch>& walk, const Cut& a, const Cut& b, bool is_whole,
-                                  Accumulated& sum, Float* moment) const {
+  HWY_INLINE void integrate_piece(const Walk<Stretch>& walk, const Cut& a, const Cut& b, Accumulated& sum,
+                                  Emission* emission) const {
     const Stretch& stretch = walk.stretch;
     const Float before = sum.transmittance;
     const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
     Segments segment{a.scalar, b.scalar, hn::Mul(stretch.length, part)};
     if (HWY_UNLIKELY(is_weighted())) weigh(stretch, a, b, segment);
     base_.integrate(segment, walk.front, sum);
-    if (moment) {
+    if (emission) {
       const Float absorbed = hn::Sub(before, sum.transmittance);
-      const bool wants_place = is_whole && !hn::AllFalse(kFloat, hn::Gt(absorbed, constant(effects_.faint)));
-      const Float place = wants_place ? find_centroid(effects_.centroid, segment) : constant(0.5f);
-      *moment = multiply_add(absorbed, multiply_add(place, part, a.u), *moment);
+      const Mask wants_place = hn::And(emission->is_single, hn::Gt(absorbed, constant(effects_.faint)));
+      Float place = constant(0.5f);
+      if (!hn::AllFalse(kFloat, wants_place))
+        place = hn::IfThenElse(wants_place, find_centroid(effects_.centroid, segment), place);
+      place = multiply_add(place, part, a.u);
+      emission->moment = multiply_add(absorbed, place, emission->moment);
+      emission->place = hn::IfThenElse(hn::Gt(part, constant(0.0f)), place, emission->place);
     }
     if (effects_.depth) note_depth(walk, a, b, before, sum.transmittance);
     if (HWY_UNLIKELY(effects_.record != nullptr)) {
@@ -332,15 +344,16 @@ class EffectIntegrator {
     Accumulated& sum = walk.sum;
     const Float zero = constant(0.0f);
     Accumulated part{zero, zero, zero, sum.transmittance};
-    Float moment = zero;
-    integrate_pieces(walk, begin, end, part, &moment);
+    Emission emission;
+    integrate_pieces(walk, begin, end, part, &emission);
     const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
     const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
     if (hn::AllFalse(kFloat, bright)) {
       add_usual(part, sum);
       return;
     }
-    const Float u = hn::Div(moment, hn::Max(absorbed, constant(1e-30f)));
+    const Float mean = hn::Div(emission.moment, hn::Max(absorbed, constant(1e-30f)));
+    const Float u = hn::IfThenElse(emission.is_single, emission.place, mean);
     add_lit(walk.stretch, walk.ray, hn::Min(hn::Max(u, begin.u), end.u), bright, part, sum);
   }
 

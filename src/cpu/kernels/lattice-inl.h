@@ -50,6 +50,7 @@ struct LatticeRays {
   Int stride[3];  ///< from cell to cell, in records
   Int cell;       ///< record at hand
   Float front, leave, leave_soon, world_per_z;
+  Float last_soon[3];  ///< depth half a step before the brick's last plane of each axis; of even lattices
   Mask alive;
 
   /// Records are those of cells, or of nodes: `nodes_more` along each axis.
@@ -78,6 +79,8 @@ struct LatticeRays {
       const Float plane = hn::IfThenElse(rising, hn::Add(index, constant(1.0f)), index);
       next[axis] = hn::IfThenElse(parallel, constant(kNever), hn::Mul(hn::Sub(plane, origin), inverse));
       step[axis] = hn::IfThenElse(parallel, constant(kNever), hn::Abs(inverse));
+      const Float last = hn::IfThenElse(rising, constant(n - 0.5f), constant(0.5f));
+      last_soon[axis] = hn::IfThenElse(parallel, constant(kNever), hn::Mul(hn::Sub(last, origin), inverse));
       start[axis] =
           hn::IfThenElse(parallel, hn::Sub(place, index), hn::IfThenElse(rising, constant(1.0f), constant(0.0f)));
       rate[axis] = hn::IfThenElse(parallel, constant(0.0f), hn::Neg(direction));
@@ -96,18 +99,28 @@ struct LatticeRays {
     return hn::Max(hn::IfThenElse(hn::Lt(plane, leave_soon), plane, leave), front);
   }
 
-  /// On to the next cell.
+  /// On to the next cell. Rounding may carry a ray past the brick's last plane of an axis a hair before it leaves:
+  /// where that matters, it `kStaysInside` the cell before that plane.
+  template <bool kStaysInside = false>
   HWY_INLINE void advance(Float back) {
     const Mask x = hn::And(hn::Le(next[0], next[1]), hn::Le(next[0], next[2]));
     const Mask y = hn::AndNot(x, hn::Le(next[1], next[2]));
     const Mask z = hn::Not(hn::Or(x, y));
-    const Mask crossed[3] = {x, y, z};
+    Mask crossed[3] = {x, y, z}, stays[3];
+    if constexpr (kStaysInside) {
+      for (int axis = 0; axis < 3; ++axis) {
+        stays[axis] = hn::And(crossed[axis], is_before_last_plane(axis));
+        crossed[axis] = hn::AndNot(stays[axis], crossed[axis]);
+      }
+    }
     for (int axis = 0; axis < 3; ++axis) {
       next[axis] = hn::Add(next[axis], hn::IfThenElseZero(crossed[axis], step[axis]));
       cell = hn::Add(cell, hn::IfThenElseZero(int_mask(crossed[axis]), stride[axis]));
     }
     if (brick_.is_uneven) advance_uneven(crossed);
-    // Rounding may carry a ray a hair beyond the brick: stay in cells that exist.
+    if constexpr (kStaysInside)
+      for (int axis = 0; axis < 3; ++axis) next[axis] = hn::IfThenElse(stays[axis], leave, next[axis]);
+    // Stay in cells that exist.
     cell = hn::Min(hn::Max(cell, hn::Zero(kInt)), last_cell);
     alive = hn::And(alive, hn::Lt(back, leave));
     front = back;
@@ -155,6 +168,14 @@ struct LatticeRays {
       cell = hn::Add(cell, hn::Mul(indices[axis], hn::Set(kInt, axis_stride)));
       axis_stride *= brick_.cells[axis] + nodes_more;
     }
+  }
+
+  /// Whether the next plane of an axis is the brick's last.
+  HWY_INLINE Mask is_before_last_plane(int axis) const {
+    if (!brick_.is_uneven) return hn::Gt(next[axis], last_soon[axis]);
+    const Mask rising = hn::Ge(directions[axis], constant(0.0f));
+    const Int last = hn::IfThenElseZero(int_mask(rising), hn::Set(kInt, brick_.cells[axis] - 1));
+    return hn::RebindMask(kFloat, hn::Eq(indices[axis], last));
   }
 
   HWY_NOINLINE void advance_uneven(const Mask crossed[3]) {

@@ -241,11 +241,12 @@ class Walker : WalkLanes {
       const auto place_of = [&](Float z) {
         return hn::Min(hn::Max(hn::Mul(hn::Sub(z, s.z_front), inverse), zero), one);
       };
-      const Float from = hn::IfThenElse(cuts_front, place_of(near), zero);
+      Float from = hn::IfThenElse(cuts_front, place_of(near), zero);
       const Float to = hn::Max(hn::IfThenElse(cuts_back, place_of(far), one), from);
+      from = hn::IfThenElse(taking, from, to);
       const Float begin = multiply_add(from, hn::Sub(segment.scalar_back, segment.scalar_front), segment.scalar_front);
       s.front = integrator_.front_at(begin);
-      integrate(from, to, hn::IfThenElseZero(taking, hn::Sub(to, from)));
+      integrate(from, to, hn::Sub(to, from));
       taking = hn::And(taking, cuts_back);
       if (!leave_intervals(s, taking, z_back)) break;
       taking = hn::And(taking, s.alive);
