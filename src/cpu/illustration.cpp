@@ -100,6 +100,8 @@ void ShadowCache::attach(const RenderSettings& settings, const ShadowedBody& bod
                          Illustration& illustration) const {
   Shading& shading = illustration.shading;
   shading.shadow_bias = find_shadow_bias(settings, body);
+  if (settings.lighting.shadows != ShadowKind::kNone || settings.lighting.ambient_occlusion > 0)
+    illustration.effects.longest_lit = shading.shadow_bias;
   if (settings.lighting.shadows == ShadowKind::kVolume) {
     for (const std::vector<LightDepths>& light : lights_) {
       std::vector<ShadowMap>& maps = illustration.shadows.emplace_back();

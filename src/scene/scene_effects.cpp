@@ -100,6 +100,7 @@ ClipShape read_clip_shape(const JsonPlace& place) {
     volume->require_keys({"file", "array", "value"});
     ClipVolume made;
     made.file = volume->at("file").string();
+    if (made.file.empty()) volume->at("file").fail("not a file name");
     if (const auto array = volume->find("array")) made.array = array->string();
     read_number(*volume, "value", made.value);
     shape.shape = made;

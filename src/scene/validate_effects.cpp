@@ -62,7 +62,6 @@ void validate(const ClipSphere& sphere, const std::string& name) {
 }
 
 void validate(const ClipVolume& volume, const std::string& name) {
-  if (volume.file.empty()) fail(name + ", volume: names no file");
   if (!std::isfinite(volume.value)) fail(name + ", value: expected a finite number");
 }
 

@@ -30,7 +30,8 @@ class EffectIntegrator {
   explicit EffectIntegrator(const IntegratorTables& tables)
       : base_(tables),
         effects_(*tables.effects),
-        is_light_all_(effects_.shading && !is_weighted() && !effects_.depth && !effects_.record),
+        is_light_all_(effects_.shading && effects_.longest_lit == 0.0f && !is_weighted() && !effects_.depth &&
+                      !effects_.record),
         is_lit_from_eye_(effects_.shading && is_lit_from_eye(*effects_.shading)) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return base_.front_at(scalar); }
@@ -154,35 +155,6 @@ class EffectIntegrator {
     integrate_volume(walk, at, end);
   }
 
-  /// Where a stretch that is monotone between `a` and `b` takes `value`, as exactly as float can tell.
-  template <class Stretch>
-  HWY_INLINE Float find_crossing(const Stretch& stretch, const Cut& a, const Cut& b, Float value) const {
-    const Float rise = hn::Sub(b.scalar, a.scalar);
-    const Mask level = hn::Eq(rise, constant(0.0f));
-    const Float t = hn::Div(hn::Sub(value, a.scalar), hn::IfThenElse(level, constant(1.0f), rise));
-    const Float chord = multiply_add(hn::Min(hn::Max(t, constant(0.0f)), constant(1.0f)), hn::Sub(b.u, a.u), a.u);
-    if constexpr (Stretch::kIsLinear) {
-      return chord;
-    } else {
-      // Newton's method, in a bracket that shrinks: a step that leaves it becomes a bisection.
-      constexpr int kSteps = 8;
-      const Mask rising = hn::Gt(rise, constant(0.0f));
-      Float low = a.u, high = b.u, at = chord;
-      for (int i = 0; i < kSteps; ++i) {
-        const Float error = hn::Sub(stretch.scalar(at), value);
-        const Mask is_beyond = hn::Xor(hn::Lt(error, constant(0.0f)), rising);
-        high = hn::IfThenElse(is_beyond, at, high);
-        low = hn::IfThenElse(is_beyond, low, at);
-        const Float slope = stretch.slope(at);
-        const Mask flat = hn::Eq(slope, constant(0.0f));
-        const Float next = hn::Sub(at, hn::Div(error, hn::IfThenElse(flat, constant(1.0f), slope)));
-        const Mask inside = hn::AndNot(flat, hn::And(hn::Ge(next, low), hn::Le(next, high)));
-        at = hn::IfThenElse(inside, next, hn::Mul(constant(0.5f), hn::Add(low, high)));
-      }
-      return at;
-    }
-  }
-
   /// Lays a sheet over what has been gathered, on the lanes of `met`: `up` where the scalar rises along the ray, `down`
   /// where it falls.
   template <class Stretch>
@@ -217,10 +189,34 @@ class EffectIntegrator {
 
   template <class Stretch>
   HWY_INLINE void integrate_volume(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
-    if (effects_.shading)
-      integrate_lit(walk, begin, end);
-    else
+    if (!effects_.shading)
       integrate_pieces(walk, begin, end, walk.sum, nullptr);
+    else if (effects_.longest_lit > 0.0f)
+      integrate_lit_parts(walk, begin, end);
+    else
+      integrate_lit(walk, begin, end);
+  }
+
+  /// In parts so short that the light that reaches them is about the same all along.
+  template <class Stretch>
+  HWY_NOINLINE void integrate_lit_parts(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
+    constexpr float kMostParts = 256.0f;
+    const Float one = constant(1.0f), span = hn::Sub(end.u, begin.u);
+    const Triple direction = walk.ray.direction();
+    const Float depth = hn::Sub(depth_at(walk.stretch, end.u), depth_at(walk.stretch, begin.u));
+    const Float length = hn::Mul(depth, hn::Sqrt(dot(direction, direction)));
+    const Float wanted = hn::Ceil(hn::Mul(length, constant(1.0f / effects_.longest_lit)));
+    const Float parts = hn::IfThenElse(hn::Gt(walk.stretch.length, constant(0.0f)),
+                                       hn::Min(hn::Max(wanted, one), constant(kMostParts)), one);
+    Cut at = begin;
+    for (Float number = one;; number = hn::Add(number, one)) {
+      const Mask last = hn::Ge(number, parts);
+      Cut next = cut_at(walk.stretch, multiply_add(hn::Div(number, parts), span, begin.u));
+      next = {hn::IfThenElse(last, end.u, next.u), hn::IfThenElse(last, end.scalar, next.scalar)};
+      integrate_lit(walk, at, next);
+      if (hn::AllTrue(kFloat, last)) return;
+      at = next;
+    }
   }
 
   /// Where pieces absorb.

@@ -82,6 +82,7 @@ struct Effects {
   float weight_by_gradient = 0.0f;  ///< by that times gradient magnitude (stored scalars a local length), at most 1
   float faint = 0.0f;               ///< opacity that is not worth a normal
   float usual_light = 1.0f;         ///< what it is lit with instead
+  float longest_lit = 0.0f;         ///< local length that is lit as its middle is, for shadows; 0: any
   float* depth = nullptr;           ///< [height][width] of the picture: see Image::depth; in local lengths from `z_eye`
   const DepthRecord* record = nullptr;
 };

@@ -102,6 +102,35 @@ HWY_INLINE Float find_centroid(const CentroidView& table, const Segments& segmen
   return hn::IfThenElse(empty, half, hn::Min(hn::Max(t, zero), one));
 }
 
+/// Where a stretch that is monotone between `a` and `b` takes `value`, as exactly as float can tell.
+template <class Stretch>
+HWY_INLINE Float find_crossing(const Stretch& stretch, const Cut& a, const Cut& b, Float value) {
+  const Float rise = hn::Sub(b.scalar, a.scalar);
+  const Mask level = hn::Eq(rise, constant(0.0f));
+  const Float t = hn::Div(hn::Sub(value, a.scalar), hn::IfThenElse(level, constant(1.0f), rise));
+  const Float chord = multiply_add(hn::Min(hn::Max(t, constant(0.0f)), constant(1.0f)), hn::Sub(b.u, a.u), a.u);
+  if constexpr (Stretch::kIsLinear) {
+    return chord;
+  } else {
+    // Newton's method, in a bracket that shrinks: a step that leaves it becomes a bisection.
+    constexpr int kSteps = 8;
+    const Mask rising = hn::Gt(rise, constant(0.0f));
+    Float low = a.u, high = b.u, at = chord;
+    for (int i = 0; i < kSteps; ++i) {
+      const Float error = hn::Sub(stretch.scalar(at), value);
+      const Mask is_beyond = hn::Xor(hn::Lt(error, constant(0.0f)), rising);
+      high = hn::IfThenElse(is_beyond, at, high);
+      low = hn::IfThenElse(is_beyond, low, at);
+      const Float slope = stretch.slope(at);
+      const Mask flat = hn::Eq(slope, constant(0.0f));
+      const Float next = hn::Sub(at, hn::Div(error, hn::IfThenElse(flat, constant(1.0f), slope)));
+      const Mask inside = hn::AndNot(flat, hn::And(hn::Ge(next, low), hn::Le(next, high)));
+      at = hn::IfThenElse(inside, next, hn::Mul(constant(0.5f), hn::Add(low, high)));
+    }
+    return at;
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace tetravox::cpu
 HWY_AFTER_NAMESPACE();
