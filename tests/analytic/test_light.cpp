@@ -88,13 +88,14 @@ TEST_P(Lit, LinearFieldHasTheModelsLight) {
       settings.lighting.is_two_sided = is_two_sided;
       const double half = threshold * range / tests::diagonal_of(body.bounds());
       const double g = norm(kSlope), strength = g * g / (g * g + half * half);
-      expect_shown(body, kHomogeneous, settings,
-                   [&](const Ray& ray) {
-                     return integrate_lit(ray, intersect_box(ray, kLower, kUpper), kColor, [&](const Vector3& place) {
-                       return illuminate(settings.lighting, ray.direction, place, kSlope, strength);
-                     });
-                   },
-                   {2e-4, 1e-5});
+      expect_shown(
+          body, kHomogeneous, settings,
+          [&](const Ray& ray) {
+            return integrate_lit(ray, intersect_box(ray, kLower, kUpper), kColor, [&](const Vector3& place) {
+              return illuminate(settings.lighting, ray.direction, place, kSlope, strength);
+            });
+          },
+          {is_grid() ? 1e-3 : 2e-4, 1e-5});  // a stretch is lit in one place; in grids it may be two cells long
     }
   }
 }
@@ -115,7 +116,7 @@ TEST_P(Lit, EveryGradientMethodFindsALinearFieldsSlope) {
 
 TEST_P(Lit, SphereHasTheModelsLight) {
   // The gradient of a distance points away from the middle. Near that it is not what any lattice finds: left out there.
-  const double radius = 0.8, inner = 0.2;
+  const double radius = 0.8, inner = 0.3;
   RenderSettings settings = make_settings(1e-4);
   settings.lighting = make_lights();
   settings.lighting.gradient_threshold = 0.0;
@@ -126,7 +127,7 @@ TEST_P(Lit, SphereHasTheModelsLight) {
     return Chord{std::max(0.0, nearest - half), std::max(0.0, nearest + half)};
   };
   for (const auto& field : {tests::Field(norm), tests::Field(square_norm)}) {
-    expect_shown(cube(is_grid() ? 48 : 32, field), kHomogeneous, settings,
+    expect_shown(cube(is_grid() ? 64 : 40, field), kHomogeneous, settings,
                  [&](const Ray& ray) {
                    const auto light_at = [&](const Vector3& place) {
                      return illuminate(settings.lighting, ray.direction, place, place, 1.0);
@@ -183,47 +184,57 @@ double way_to_light(const Vector3& place, const Vector3& direction) {
 
 class Shadowed : public Lit {
  protected:
-  static void expect_beer(const Light& light, const std::pair<const char*, Camera>& view, double allowed) {
-    const tests::Body body = cube(24, [](const Vector3&) { return 0.5; });
+  /// `max` and `rms`: allowed differences.
+  static void expect_beer(const Light& light, const std::pair<const char*, Camera>& view, double max, double rms) {
+    const tests::Body body = cube(is_grid() ? 64 : 24, [](const Vector3&) { return 0.5; });
     RenderSettings settings = make_settings(1e-4);
     settings.lighting.lights = {light};
     settings.lighting.material = {0.2, 0.8, 0.3, 12.0};
     settings.lighting.shadows = ShadowKind::kVolume;
     const Image image = body.draw(kHomogeneous, view.second, settings);
-    const auto expected = [&](const Ray& ray) {
-      return integrate_lit(ray, intersect_box(ray, kLower, kUpper), kColor, [&](const Vector3& place) {
-        Vector3 direction = ray.direction;
-        if (light.kind == LightKind::kDirectional) direction = normalized(light.direction);
-        if (light.kind == LightKind::kPoint) direction = normalized(difference(place, light.position));
-        return illuminate(settings.lighting, ray.direction, place, {}, 0.0, [&](const Light&, const Vector3& p) {
-          return std::exp(-kExtinction * way_to_light(p, direction));
-        });
-      });
-    };
-    EXPECT_TRUE(shows(image, view.second, expected, {allowed, 1e-5})) << view.first;
+    Image expected = image;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const Ray ray = make_ray(view.second, image.width, image.height, x, y);
+        const auto light_at = [&](const Vector3& place) {
+          Vector3 direction = ray.direction;
+          if (light.kind == LightKind::kDirectional) direction = normalized(light.direction);
+          if (light.kind == LightKind::kPoint) direction = normalized(difference(place, light.position));
+          return illuminate(settings.lighting, ray.direction, place, {}, 0.0, [&](const Light&, const Vector3& p) {
+            return std::exp(-kExtinction * way_to_light(p, direction));
+          });
+        };
+        const Rgba wanted = integrate_lit(ray, intersect_box(ray, kLower, kUpper), kColor, light_at);
+        for (int k = 0; k < 4; ++k) expected.pixel(x, y)[k] = static_cast<float>(wanted[k]);
+      }
+    EXPECT_GT(tests::count_covered(image), 400u) << view.first;
+    EXPECT_TRUE(tests::images_agree(image, expected, max, rms)) << view.first;
+  }
+  /// Where edges of the cube lie between the places of the lattice, the depth behind them has a kink.
+  static void expect_beer_with_kinks(const Light& light, const std::pair<const char*, Camera>& view) {
+    expect_beer(light, view, 1e-2, 1e-3);
   }
 };
 
 TEST_P(Shadowed, LightAlongAnAxis) {
   for (const auto& view : standard_cameras())
     for (const Vector3& direction : {Vector3{1, 0, 0}, Vector3{0, -3, 0}, Vector3{0, 0, 1}})
-      expect_beer(directional(direction), view, 1e-3);
+      expect_beer(directional(direction), view, 1e-3, 5e-4);
 }
 
 TEST_P(Shadowed, LightFromTheSide) {
-  for (const auto& view : standard_cameras()) expect_beer(directional({1.0, -0.6, 0.4}), view, 1e-3);
+  for (const auto& view : standard_cameras()) expect_beer_with_kinks(directional({1.0, -0.6, 0.4}), view);
 }
 
 TEST_P(Shadowed, LightAlongTheViewAndAgainstIt) {
   const auto view = standard_cameras()[1];
   const Vector3 along = difference(view.second.focal_point, view.second.position);
-  expect_beer(directional(along), view, 1e-3);
-  expect_beer(directional(scaled(along, -1.0)), view, 1e-3);
+  for (const double sign : {1.0, -1.0}) expect_beer_with_kinks(directional(scaled(along, sign)), view);
 }
 
 TEST_P(Shadowed, Headlight) {
   const auto cameras = standard_cameras();
-  for (const std::size_t i : {0u, 1u}) expect_beer({}, cameras[i], 1e-3);
+  for (const std::size_t i : {0u, 1u}) expect_beer_with_kinks({}, cameras[i]);
 }
 
 TEST_P(Shadowed, PointLight) {
@@ -231,7 +242,7 @@ TEST_P(Shadowed, PointLight) {
   light.kind = LightKind::kPoint;
   for (const Vector3& position : {Vector3{3.0, -2.0, 2.5}, Vector3{1.4, 0.2, -0.1}}) {
     light.position = position;
-    for (const auto& view : standard_cameras()) expect_beer(light, view, 1e-3);
+    for (const auto& view : standard_cameras()) expect_beer_with_kinks(light, view);
   }
 }
 
