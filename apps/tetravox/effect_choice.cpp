@@ -23,19 +23,26 @@ void override_lighting(const EffectOptions& options, Lighting& lighting) {
   if (options.wants_light() && !options.lights && !lighting.is_lit()) lighting.lights.emplace_back();
 }
 
+void override_surfaces(const EffectOptions& options, std::vector<Isosurface>& surfaces) {
+  if (options.surfaces) {
+    surfaces.clear();
+    for (const SurfaceOption& option : *options.surfaces)
+      surfaces.push_back({.value = option.value, .opacity = option.opacity});
+  }
+  // What is said of all surfaces holds for those of the scene, too.
+  for (Isosurface& surface : surfaces) {
+    if (options.are_surfaces_one_sided) surface.is_two_sided = false;
+    surface.back_color = options.surface_back_color.value_or(surface.back_color);
+  }
+}
+
 }  // namespace
 
 void override_effects(const EffectOptions& options, Scene& scene) {
   RenderSettings& settings = scene.settings;
   override_lighting(options, settings.lighting);
-  if (!options.surfaces.empty()) settings.surfaces.clear();
-  for (const SurfaceOption& option : options.surfaces) {
-    Isosurface& surface = settings.surfaces.emplace_back();
-    surface.value = option.value;
-    surface.opacity = option.opacity;
-    surface.is_two_sided = !options.are_surfaces_one_sided;
-  }
-  if (!options.clip_shapes.empty()) settings.clipping.shapes = options.clip_shapes;
+  override_surfaces(options, settings.surfaces);
+  settings.clipping.shapes = options.clip_shapes.value_or(settings.clipping.shapes);
   settings.clipping.use_union = options.use_union.value_or(settings.clipping.use_union);
   settings.opacity_weight = options.weight.value_or(settings.opacity_weight);
   settings.opacity_weight_scale = options.weight_scale.value_or(settings.opacity_weight_scale);
@@ -48,8 +55,8 @@ void override_effects(const EffectOptions& options, Scene& scene) {
 
 void complete_effects(const EffectOptions& options, CompletedScene& completed, Scene& scene) {
   RenderSettings& settings = scene.settings;
-  for (std::size_t i = 0; i < options.surfaces.size(); ++i) {
-    const SurfaceOption& option = options.surfaces[i];
+  for (std::size_t i = 0; options.surfaces && i < options.surfaces->size(); ++i) {
+    const SurfaceOption& option = (*options.surfaces)[i];
     Isosurface& surface = settings.surfaces[i];
     surface.front_color =
         option.color ? *option.color : eval_optical_function(completed.optical_function, option.value).color;
@@ -61,13 +68,25 @@ void complete_effects(const EffectOptions& options, CompletedScene& completed, S
   }
 }
 
-void SceneParts::load(const Scene& scene, const Progress& progress) {
+std::vector<std::string> check_effects(const EffectOptions& options, const RenderSettings& settings) {
+  std::vector<std::string> lines;
+  if (settings.surfaces.empty() && (options.surface_back_color || options.are_surfaces_one_sided))
+    lines.push_back("--isosurface-back-color and --one-sided change nothing: there is no --isosurface");
+  if (settings.clipping.shapes.size() < 2 && options.use_union)
+    lines.push_back("--clip-combine changes nothing: there are no two shapes to combine");
+  if (settings.opacity_weight == OpacityWeight::kNone && options.weight_scale)
+    lines.push_back("--opacity-weight-scale changes nothing: there is no --opacity-weight");
+  return lines;
+}
+
+void SceneParts::load(const Scene& scene, double reader_timeout, const Progress& progress) {
   const RenderSettings& settings = scene.settings;
   for (std::size_t i = 0; i < settings.clipping.shapes.size(); ++i) {
     const auto* volume = std::get_if<ClipVolume>(&settings.clipping.shapes[i].shape);
     if (!volume) continue;
     ReadOptions read;
     read.array.name = volume->array;
+    read.timeout = reader_timeout;
     const Dataset dataset = read_dataset(volume->file, read, progress);
     if (!dataset.is_grid())
       throw Error(ErrorCode::kUnsupported, "'" + volume->file + "' is a mesh: a clip volume must be a grid");

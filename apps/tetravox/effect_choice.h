@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace tetravox::tool {
@@ -21,11 +22,14 @@ void override_effects(const EffectOptions& options, Scene& scene);
 /// What the data decide: colours of surfaces, and whether the volume is drawn. After the transfer function is known.
 void complete_effects(const EffectOptions& options, CompletedScene& completed, Scene& scene);
 
+/// Options that change nothing here, one line each.
+std::vector<std::string> check_effects(const EffectOptions& options, const RenderSettings& settings);
+
 /// Files that a scene names beside its data, as the renderer wants them.
 class SceneParts {
  public:
-  /// Reads and prepares them. @throws Error that names the file.
-  void load(const Scene& scene, const Progress& progress);
+  /// Reads and prepares them; each may take `reader_timeout` seconds to read. @throws Error that names the file.
+  void load(const Scene& scene, double reader_timeout, const Progress& progress);
   /// Hands them to a renderer, which views them.
   void attach(Renderer& renderer) const;
 

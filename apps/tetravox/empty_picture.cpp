@@ -38,6 +38,9 @@ double largest_extinction(const OpticalFunction& function, const ValueRange& ran
 }
 
 std::string explain_transparent(const PictureContext& context) {
+  if (!context.scene.settings.clipping.shapes.empty())
+    return "the picture is empty: the clipping keeps nothing that can be seen; the data lie in " +
+           format_bounds(bounds_of(context.body)) + "; --clip-box none shows them whole";
   if (context.statistics.rays == 0)
     return "the picture is empty: the camera does not see the data (" + format_bounds(bounds_of(context.body)) +
            "); leave the camera out for a view of everything";

@@ -20,9 +20,15 @@ namespace tetravox::tool {
 
 using Setter = std::function<void(const std::string& option, const std::string& text)>;
 
+/// The name that messages show: "--output" of "-o,--output", "--clip-box" of "--clip-box,--crop".
+inline std::string shown_name(const std::string& names) {
+  const std::string name = names.substr(names.find("--"));
+  return name.substr(0, name.find(','));
+}
+
 /// Adds an option whose text goes through one of our own strict parsers.
 inline void add(CLI::App& app, const std::string& names, const std::string& type, const std::string& help, Setter set) {
-  const std::string shown = names.substr(names.find("--"));
+  const std::string shown = shown_name(names);
   app.add_option_function<std::string>(
          names, [shown, set = std::move(set)](const std::string& text) { set(shown, text); }, help)
       ->type_name(type);
@@ -65,12 +71,13 @@ inline bool parse_switch(const std::string& option, const std::string& text) {
 }
 
 /// Adds an option that may be given several times, each time with one text.
-inline void add_repeatable(CLI::App& app, const std::string& name, const std::string& type, const std::string& help,
+inline void add_repeatable(CLI::App& app, const std::string& names, const std::string& type, const std::string& help,
                            Setter set) {
+  const std::string shown = shown_name(names);
   app.add_option_function<std::vector<std::string>>(
-         name,
-         [name, set = std::move(set)](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts) set(name, text);
+         names,
+         [shown, set = std::move(set)](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts) set(shown, text);
          },
          help)
       ->type_name(type)

@@ -73,21 +73,21 @@ struct SurfaceOption {
   double opacity = 1.0;
 };
 
-/// Light, surfaces and clipping: put over those of the scene.
+/// Light, surfaces and clipping: put over those of the scene. An empty list drops the scene's.
 struct EffectOptions {
   bool use_headlight = false;
-  std::optional<std::vector<Light>> lights;  ///< empty: none
+  std::optional<std::vector<Light>> lights;
   std::optional<Material> material;
   std::optional<GradientMethod> gradient;
   std::optional<double> gradient_threshold;
   std::optional<bool> is_two_sided;
   std::optional<ShadowKind> shadows;
   std::optional<int> shadow_resolution, ambient_occlusion;
-  std::vector<SurfaceOption> surfaces;
+  std::optional<std::vector<SurfaceOption>> surfaces;
   std::optional<Color> surface_back_color;
   bool are_surfaces_one_sided = false;
   std::optional<bool> shows_volume;
-  std::vector<ClipShape> clip_shapes;
+  std::optional<std::vector<ClipShape>> clip_shapes;
   std::optional<bool> use_union;
   std::optional<OpacityWeight> weight;
   std::optional<double> weight_scale;
@@ -101,8 +101,8 @@ struct RenderOptions {
   CameraOptions camera;
   MethodOptions method;
   EffectOptions effects;
-  std::string output_depth;
-  std::string output;  ///< empty: the input's name with ".png" in the current directory
+  std::string output;        ///< empty: the input's name with ".png" in the current directory
+  std::string output_depth;  ///< empty: none
   std::optional<std::array<int, 2>> resolution;
   std::optional<Color> background;
   bool use_alpha = false;

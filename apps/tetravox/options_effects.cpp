@@ -3,6 +3,7 @@
 #include "apps/tetravox/option_adding.h"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -111,10 +112,19 @@ ClipShape parse_volume(const std::string& option, const std::string& text) {
   return {volume, true};
 }
 
-/// A setter for a shape that may have "outside:" before it.
+/// A setter that adds what `parse` makes of the text to a list; "none" empties it.
+template <class T, class Parse>
+Setter store_in(std::optional<std::vector<T>>& list, Parse parse) {
+  return [&list, parse](const std::string& option, const std::string& text) {
+    if (!list || text == "none") list.emplace();
+    if (text != "none") list->push_back(parse(option, text));
+  };
+}
+
+/// A parser of a shape that may have "outside:" before it.
 template <class Parse>
-Setter store_shape(std::vector<ClipShape>& shapes, Parse parse) {
-  return [&shapes, parse](const std::string& option, const std::string& text) {
+auto with_side(Parse parse) {
+  return [parse](const std::string& option, const std::string& text) {
     constexpr const char* kOutside = "outside:";
     const bool is_outside = text.starts_with(kOutside);
     ClipShape shape = parse(option, is_outside ? text.substr(8) : text);
@@ -124,7 +134,7 @@ Setter store_shape(std::vector<ClipShape>& shapes, Parse parse) {
     } catch (const Error& error) {
       throw UsageError(option + ": " + error.what());
     }
-    shapes.push_back(shape);
+    return shape;
   };
 }
 
@@ -132,7 +142,7 @@ Setter store_shape(std::vector<ClipShape>& shapes, Parse parse) {
 
 bool EffectOptions::wants_light() const {
   return use_headlight || material || gradient || gradient_threshold || is_two_sided || shadows || shadow_resolution ||
-         ambient_occlusion || !surfaces.empty();
+         ambient_occlusion || (surfaces && !surfaces->empty());
 }
 
 void add_light(CLI::App& app, EffectOptions& effects) {
@@ -161,23 +171,23 @@ void add_light(CLI::App& app, EffectOptions& effects) {
 void add_shapes(CLI::App& app, EffectOptions& effects) {
   app.option_defaults()->group("Surfaces");
   add_repeatable(app, "--isosurface", "VALUE[:R,G,B[:OPACITY]]",
-                 "Surface where the field has a value; may be given again (default: the function's colour, opaque)",
-                 [&effects](const std::string& option, const std::string& text) {
-                   effects.surfaces.push_back(parse_surface(option, text));
-                 });
+                 "Surface where the field has a value; may be given again (default: the function's colour, opaque); "
+                 "none: no surfaces",
+                 store_in(effects.surfaces, parse_surface));
   add(app, "--isosurface-back-color", "R,G,B", "Seen from where the field is higher",
       store(effects.surface_back_color, parse_color));
   app.add_flag("--one-sided", effects.are_surfaces_one_sided, "Surfaces are invisible from where the field is higher");
   add(app, "--volume", "on|off", "Draw the volume, too (default: on)", store(effects.shows_volume, parse_switch));
 
-  app.option_defaults()->group("Clipping (each may be given again; outside: before it keeps what is outside)");
-  std::vector<ClipShape>& shapes = effects.clip_shapes;
+  app.option_defaults()->group(
+      "Clipping (each may be given again; outside: before it keeps what is outside; none: no shapes)");
+  std::optional<std::vector<ClipShape>>& shapes = effects.clip_shapes;
   add_repeatable(app, "--clip-plane", "X,Y,Z,NX,NY,NZ", "Keep the side that the normal points to",
-                 store_shape(shapes, parse_plane));
-  add_repeatable(app, "--clip-box,--crop", "X0,X1,Y0,Y1,Z0,Z1", "Keep a box", store_shape(shapes, parse_box));
-  add_repeatable(app, "--clip-sphere", "X,Y,Z,R", "Keep a sphere", store_shape(shapes, parse_sphere));
+                 store_in(shapes, with_side(parse_plane)));
+  add_repeatable(app, "--clip-box,--crop", "X0,X1,Y0,Y1,Z0,Z1", "Keep a box", store_in(shapes, with_side(parse_box)));
+  add_repeatable(app, "--clip-sphere", "X,Y,Z,R", "Keep a sphere", store_in(shapes, with_side(parse_sphere)));
   add_repeatable(app, "--clip-volume", "FILE[:VALUE]", "Keep where another grid is at least VALUE (default: 0.5)",
-                 store_shape(shapes, parse_volume));
+                 store_in(shapes, with_side(parse_volume)));
   add(app, "--clip-combine", "intersection|union", "Keep where all shapes agree, or any (default: intersection)",
       [&effects](const std::string& option, const std::string& text) {
         effects.use_union = parse_choice(option, text, {"intersection", "union"}) == 1;

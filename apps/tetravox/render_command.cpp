@@ -91,7 +91,7 @@ std::string choose_output(const RenderOptions& options, const SceneInput& input)
     const bool is_twice = std::count(written.begin(), written.end(), written[i]) > 1;
     if (is_input || is_twice)
       throw UsageError("'" + written[i] +
-                       "' would be written over: give picture, scene and statistics names of their own");
+                       "' would be written over: give picture, depth, scene and statistics names of their own");
   }
   return output;
 }
@@ -149,6 +149,7 @@ void load_body(const RenderOptions& options, Job& job, Talk& talk) {
   const RenderSettings& settings = job.input.scene.settings;
   for (const std::string& line : check_method(options.method, settings, dataset.is_grid(), job.input.data_path))
     talk.warn("warning: " + line);
+  for (const std::string& line : check_effects(options.effects, settings)) talk.warn("warning: " + line);
   require_memory(plan_memory(dataset, settings), job.input.data_path);
   statistics.input_bytes = input_bytes(dataset);
 
@@ -258,7 +259,7 @@ void run_render(const RenderOptions& options) {
   job.input = load_scene_input(options.input);
   job.output = choose_output(options, job.input);
   override_scene(options, job.input.scene);
-  job.parts.load(job.input.scene, talk.line.progress());
+  job.parts.load(job.input.scene, job.input.read.timeout, talk.line.progress());
   load_body(options, job, talk);
   complete_job(options, job);
   const Image image = draw(options, job, talk);

@@ -29,12 +29,22 @@ void read_number(const JsonPlace& place, const char* key, double& value) {
 }
 
 Light read_light(const JsonPlace& place) {
-  place.require_keys({"kind", "direction", "position", "color", "intensity"});
   Light light;
   const JsonPlace kind = place.at("kind");
   light.kind = at_place(kind, [&] { return light_kind_from_name(kind.string()); });
-  if (light.kind == LightKind::kDirectional) place.at("direction").numbers(light.direction.data(), 3);
-  if (light.kind == LightKind::kPoint) place.at("position").numbers(light.position.data(), 3);
+  switch (light.kind) {
+    case LightKind::kHeadlight:
+      place.require_keys({"kind", "color", "intensity"});
+      break;
+    case LightKind::kDirectional:
+      place.require_keys({"kind", "direction", "color", "intensity"});
+      place.at("direction").numbers(light.direction.data(), 3);
+      break;
+    case LightKind::kPoint:
+      place.require_keys({"kind", "position", "color", "intensity"});
+      place.at("position").numbers(light.position.data(), 3);
+      break;
+  }
   if (const auto color = place.find("color")) color->numbers(light.color.data(), 3);
   read_number(place, "intensity", light.intensity);
   return light;
@@ -56,6 +66,12 @@ void read_material(const JsonPlace& place, Material& material) {
   read_number(place, "diffuse", material.diffuse);
   read_number(place, "specular", material.specular);
   read_number(place, "shininess", material.shininess);
+}
+
+/// Any number that the seed can be: more than `JsonPlace::integer` takes.
+std::uint64_t read_seed(const JsonPlace& place) {
+  if (!place.value().is_number_unsigned()) place.fail("expected a whole number from 0 to 18446744073709551615");
+  return place.value().get<std::uint64_t>();
 }
 
 bool read_keep(const JsonPlace& place) {
@@ -99,8 +115,9 @@ ClipShape read_clip_shape(const JsonPlace& place) {
   if (const auto volume = place.find("volume")) {
     volume->require_keys({"file", "array", "value"});
     ClipVolume made;
-    made.file = volume->at("file").string();
-    if (made.file.empty()) volume->at("file").fail("not a file name");
+    const JsonPlace file = volume->at("file");
+    made.file = file.string();
+    if (made.file.empty() || made.file.find('\0') != std::string::npos) file.fail("not a file name");
     if (const auto array = volume->find("array")) made.array = array->string();
     read_number(*volume, "value", made.value);
     shape.shape = made;
@@ -149,8 +166,7 @@ Lighting read_lighting(const JsonPlace& place) {
     lighting.shadow_resolution = static_cast<int>(resolution->integer(8, 512));
   if (const auto occlusion = place.find("ambient_occlusion"))
     lighting.ambient_occlusion = static_cast<int>(occlusion->integer(0, 1024));
-  if (const auto seed = place.find("occlusion_seed"))
-    lighting.occlusion_seed = static_cast<std::uint64_t>(seed->integer(0, 1LL << 53));
+  if (const auto seed = place.find("occlusion_seed")) lighting.occlusion_seed = read_seed(*seed);
   at_place(place, [&] { validate_lighting(lighting); });
   return lighting;
 }
@@ -183,12 +199,14 @@ std::vector<Isosurface> read_surfaces(const JsonPlace& place) {
     at.require_keys({"value", "color", "front_color", "back_color", "opacity", "two_sided"});
     Isosurface& surface = surfaces.emplace_back();
     surface.value = at.at("value").number();
-    if (const auto color = at.find("color")) {
+    const auto color = at.find("color"), front = at.find("front_color"), back = at.find("back_color");
+    if (color && (front || back)) at.fail("give 'color' for both sides, or 'front_color' and 'back_color'");
+    if (color) {
       color->numbers(surface.front_color.data(), 3);
       surface.back_color = surface.front_color;
     }
-    if (const auto color = at.find("front_color")) color->numbers(surface.front_color.data(), 3);
-    if (const auto color = at.find("back_color")) color->numbers(surface.back_color.data(), 3);
+    if (front) front->numbers(surface.front_color.data(), 3);
+    if (back) back->numbers(surface.back_color.data(), 3);
     read_number(at, "opacity", surface.opacity);
     if (const auto two_sided = at.find("two_sided")) surface.is_two_sided = two_sided->boolean();
   }

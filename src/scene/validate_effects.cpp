@@ -53,7 +53,8 @@ void validate(const ClipPlane& plane, const std::string& name) {
 
 void validate(const ClipBox& box, const std::string& name) {
   for (const ValueRange& range : box.bounds)
-    if (!(range.min < range.max)) fail(name + ", box: expected bounds that ascend along each axis");
+    if (!(range.min < range.max) || !std::isfinite(range.min) || !std::isfinite(range.max))
+      fail(name + ", box: expected finite bounds that ascend along each axis");
 }
 
 void validate(const ClipSphere& sphere, const std::string& name) {

@@ -32,7 +32,9 @@ TEST_F(Listing, Topics) {
   expect_text({"list", "presets"}, {"viridis", "coolwarm", "peaks", "random", "auto:boundaries"});
   expect_text({"list", "readers"}, {"VTU", ".png", ".exr", ".npy"});
   expect_text({"list", "builtins"}, {"builtin:sphere", "builtin:buckyball", "builtin:duct"});
-  expect_text({"list", "methods"}, {"walk", "antiderivative", "partial", "post", "Instruction sets"});
+  expect_text({"list", "methods"},
+              {"walk", "antiderivative", "partial", "post", "Gradients (--gradient)", "central", "Shadows (--shadows)",
+               "Opacity weights (--opacity-weight)", "scalar-difference", "Instruction sets"});
 }
 
 TEST_F(Listing, InfoOfAFile) {
