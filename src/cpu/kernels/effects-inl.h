@@ -221,9 +221,9 @@ class EffectIntegrator {
 
   /// Where pieces absorb.
   struct Emission {
-    Float moment = constant(0.0f);  ///< sum over the pieces: what it absorbs times where that is
-    Float place = constant(0.5f);   ///< where that is, of rays with a single piece
-    Mask is_single = hn::FirstN(kFloat, kLanes);
+    Float moment;  ///< sum over the pieces: what it absorbs times where that is
+    Float place;   ///< where that is, of rays with a single piece
+    Mask is_single;
   };
 
   /// Adds linear pieces to `sum`, and says where they absorb, if that is asked for. What one ray is given does not
@@ -340,7 +340,7 @@ class EffectIntegrator {
     Accumulated& sum = walk.sum;
     const Float zero = constant(0.0f);
     Accumulated part{zero, zero, zero, sum.transmittance};
-    Emission emission;
+    Emission emission{zero, constant(0.5f), hn::FirstN(kFloat, kLanes)};
     integrate_pieces(walk, begin, end, part, &emission);
     const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
     const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
