@@ -276,7 +276,7 @@ TEST(EffectRoundTrip, SayWhatIsWrongAboutSurfacesAndClipping) {
   expect_bad_shape(R"({"sphere":{"center":[0,0,0],"radius":0}})", "clip shape 0, radius", "above 0");
   expect_bad_shape(R"({"volume":{"array":"a"}})", "clipping.shapes[0].volume", "'file'");
   expect_bad_shape(R"({"volume":{"file":"a\u0000b"}})", "clipping.shapes[0].volume.file", "file name");
-  expect_bad_shape(R"({"volume":{"file":""}})", "clip shape 0, volume", "no file");
+  expect_bad_shape(R"({"volume":{"file":""}})", "clipping.shapes[0].volume.file", "file name");
   expect_bad(R"("render":{"opacity_weight":"levoy"})", "render.opacity_weight", "scalar-difference");
   expect_bad(R"("render":{"opacity_weight_scale":0})", "render.opacity_weight_scale", "above 0");
 }
