@@ -311,7 +311,7 @@ TEST_P(Surfaces, ClippedSurfacesAreMetInsideAlone) {
   const LinearField field{0.5, {0.2, -0.15, 0.1}};
   RenderSettings settings = make_settings(61, 43);
   settings.surfaces = two_sheets(0.43, 0.61);
-  const ClipSphere sphere{{0.1, 0, 0.05}, 0.8};
+  const ClipSphere sphere{{0.1, 0, 0.05}, 0.95};
   settings.clipping.shapes = {{sphere, true}};
   expect_shown(cube(7, field), kNothing, settings,
                [&](const Ray& ray) {

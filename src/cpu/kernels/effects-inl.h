@@ -274,7 +274,9 @@ class EffectIntegrator {
     }
     if (effects_.depth) note_depth(walk, a, b, before, sum.transmittance);
     if (HWY_UNLIKELY(effects_.record != nullptr)) {
-      const Float z[2] = {depth_at(stretch, a.u), depth_at(stretch, b.u)};
+      const Mask takes_part = hn::Gt(stretch.length, constant(0.0f));
+      const Float z_begin = depth_at(stretch, a.u);
+      const Float z[2] = {z_begin, hn::IfThenElse(takes_part, depth_at(stretch, b.u), z_begin)};
       const Float ends[2] = {before, sum.transmittance};
       record_depths(*effects_.record, walk.ray.pixels, z, ends);
     }
