@@ -72,11 +72,14 @@ HWY_NOINLINE inline void record_depths(const DepthRecord& record, const std::int
   for (std::size_t i = 0; i < kLanes; ++i) {
     const float begin = places[0][i], end = std::fmin(places[1][i], static_cast<float>(record.slices - 1));
     if (!(end > begin)) continue;
-    for (float slice = std::fmax(std::floor(begin) + 1.0f, 0.0f); slice <= end; slice += 1.0f) {
+    float* depth = record.depths + pixels[i];
+    float slice = std::fmax(std::floor(begin) + 1.0f, 0.0f);
+    for (; slice <= end; slice += 1.0f) {
       const float t = (slice - begin) / (places[1][i] - begin);
-      record.depths[static_cast<std::size_t>(slice) * slice_size + static_cast<std::size_t>(pixels[i])] =
-          depths[0][i] + t * (depths[1][i] - depths[0][i]);
+      depth[static_cast<std::size_t>(slice) * slice_size] = depths[0][i] + t * (depths[1][i] - depths[0][i]);
     }
+    // What is behind has this depth, unless the ray goes on.
+    if (slice < static_cast<float>(record.slices)) depth[static_cast<std::size_t>(slice) * slice_size] = depths[1][i];
   }
 }
 
