@@ -39,7 +39,7 @@ void find_central_gradients(const DifferenceField& field, const grid::Block& blo
                             std::vector<float>& gradients) {
   grid::Block around;
   for (int axis = 0; axis < 3; ++axis) {
-    around.first[axis] = block.first[axis] - 1 + field.padding;
+    around.first[axis] = block.first[axis] - 1;
     around.count[axis] = block.count[axis] + 2;
   }
   scratch.resize(static_cast<std::size_t>(around.size()));

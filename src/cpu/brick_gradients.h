@@ -3,7 +3,6 @@
 /// Gradients at the nodes (or cells) of a brick's lattice, in grid coordinates: stored scalar a grid unit.
 
 #include "src/grid/frame.h"
-#include "src/grid/separable_kernel.h"
 #include "src/grid/values.h"
 
 #include <array>
@@ -25,8 +24,7 @@ struct DifferenceField {
   const grid::BlockReader* reader = nullptr;
   const grid::GridFrame* frame = nullptr;
   std::array<std::size_t, 3> value_dimensions{};
-  std::int64_t padding = 0;  ///< places of the reader before the first value
-  bool is_cell = false;      ///< values lie in the middles of cells
+  bool is_cell = false;  ///< values lie in the middles of cells
 };
 
 /// Central differences of the values of `block`, [k][j][i][4]; one-sided at the border of the grid and beside missing

@@ -18,6 +18,7 @@ struct FrameContext {
   const Kernels& kernels;
   const Progress& progress;
   std::span<const PreparedGrid* const> clip_volumes;  ///< one a shape of the clipping, null where it is no volume
+  std::uint64_t clip_number = 0;                      ///< changes with them
 };
 
 /// Draws frames of one dataset. Not safe for concurrent calls.

@@ -139,16 +139,22 @@ void for_each_tile(const TileBounds& pixels, int tile_columns, const Visit& visi
 
 }  // namespace
 
+LocalFrame find_local_frame(const PreparedGrid& grid) {
+  LocalFrame frame;
+  double half_extent = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    frame.origin[axis] = 0.5 * grid.bounds[axis].min + 0.5 * grid.bounds[axis].max;
+    half_extent = std::max(half_extent, 0.5 * grid.bounds[axis].max - 0.5 * grid.bounds[axis].min);
+  }
+  if (half_extent > 0.0) frame.world_per_local = half_extent;
+  return frame;
+}
+
 GridView make_grid_view(const PreparedGrid& grid, const grid::GridFrame& frame, const Camera& camera, int width,
                         int height) {
   GridView view;
-  Vector3 center{};
-  double half_extent = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    center[axis] = 0.5 * grid.bounds[axis].min + 0.5 * grid.bounds[axis].max;
-    half_extent = std::max(half_extent, 0.5 * grid.bounds[axis].max - 0.5 * grid.bounds[axis].min);
-  }
-  view.world_per_local = half_extent > 0.0 ? half_extent : 1.0;
+  const auto [center, world_per_local] = find_local_frame(grid);
+  view.world_per_local = world_per_local;
   view.origin = center;
   view.camera = make_camera_frame(center, view.world_per_local, camera, width, height);
   // Offsets are taken from the centre, so that a grid far from the origin loses nothing.

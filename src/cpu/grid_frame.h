@@ -14,6 +14,13 @@
 
 namespace tetravox::cpu {
 
+/// Local lengths of a grid: world = origin + local * world_per_local, so that |local| <= 1.
+struct LocalFrame {
+  Vector3 origin{};  ///< the middle of the bounds
+  double world_per_local = 1.0;
+};
+LocalFrame find_local_frame(const PreparedGrid& grid);
+
 /// The camera's frame of a grid, and the way from it to grid coordinates.
 struct GridView {
   CameraFrame camera;

@@ -196,7 +196,8 @@ class GridRenderer final : public FrameRenderer {
 
   std::uint64_t bytes() const override {
     return antiderivative_.bytes() + control_points_.bytes() + plans_.size() * sizeof(BrickPlan) +
-           (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_;
+           (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_ +
+           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes();
   }
 
   Source source() const override { return Source::kMarch; }
@@ -253,7 +254,7 @@ LatticeField GridRenderer::lattice_field(const RenderSettings& settings, const K
   field.is_nearest = field.is_constant && grid_.data.association == Association::kPoint;
   field.allowed_rate = allowed_rate_of(settings.tolerance, diagonal());
   field.gradients = choose_gradients(settings);
-  field.differences = {&reader_, &frame_, drawn().data.value_dimensions(), 0,
+  field.differences = {&reader_, &frame_, drawn().data.value_dimensions(),
                        drawn().data.association == Association::kCell};
   return field;
 }
@@ -294,15 +295,8 @@ void GridRenderer::describe(const RenderSettings& settings, FrameParts& frame) {
 }
 
 ShadowedBody GridRenderer::shadowed_body() const {
-  // The local frame of make_grid_view.
-  ShadowedBody body{drawn().bounds, {}, 0.0};
-  for (int axis = 0; axis < 3; ++axis) {
-    const ValueRange& bound = body.bounds[axis];
-    body.origin[axis] = 0.5 * bound.min + 0.5 * bound.max;
-    body.world_per_local = std::max(body.world_per_local, 0.5 * bound.max - 0.5 * bound.min);
-  }
-  if (!(body.world_per_local > 0.0)) body.world_per_local = 1.0;
-  return body;
+  const LocalFrame local = find_local_frame(drawn());
+  return {drawn().bounds, local.origin, local.world_per_local};
 }
 
 void GridRenderer::prepare_filter(const RenderSettings& settings) {
@@ -438,14 +432,13 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
 }
 
 void GridRenderer::prepare_shadows(const Camera& camera, const RenderSettings& settings, const FrameContext& context) {
-  const auto draw_depths = [&](const Camera& light, const RenderSettings& light_settings, const DepthRecord& record) {
-    Image unused{light_settings.width, light_settings.height, {}};
-    unused.pixels.resize(4 * static_cast<std::size_t>(unused.width) * unused.height);
+  const auto draw_depths = [&](const LightPass& pass, Image& image) {
     RenderStatistics uncounted;
-    plan(light_settings);
-    draw({light, light_settings, true, &record}, context, unused, uncounted);
+    plan(pass.settings);
+    draw({pass.camera, pass.settings, true, &pass.record}, context, image, uncounted);
   };
-  shadows_.prepare(settings, shadowed_body(), camera, function_number_, draw_depths, context.progress);
+  shadows_.prepare(settings, {shadowed_body(), camera, function_number_, context.clip_number}, draw_depths,
+                   context.progress);
 }
 
 /// Draws with the plans at hand.

@@ -14,6 +14,12 @@ namespace {
 /// A piece of a ray is worth a normal if its opacity exceeds this part of the tolerance.
 constexpr double kFaintOfTolerance = 1.0 / 200.0;
 
+/// What is fainter is lit with about what most places get.
+constexpr float kUsualLight = 0.75f;
+
+/// Of the shadows' lattice: by how many steps surfaces are moved off themselves, and how many are lit as their middle.
+constexpr float kBiasInSteps = 1.5f, kLitInSteps = 1.5f;
+
 LightSource make_light(const Light& light, const IllustratedFrame& frame) {
   LightSource source;
   for (int channel = 0; channel < 3; ++channel)
@@ -60,48 +66,62 @@ void fill_shading(const Lighting& lighting, const IllustratedFrame& frame, Illus
   shading.half_strength = static_cast<float>(stored * stored);
 }
 
-/// Everything that shadows depend on, as text.
-std::string shadow_key(const RenderSettings& settings, const std::optional<Camera>& eye, std::uint64_t function) {
+/// Everything that what `lights` see depends on, as text.
+std::string shadow_key(const RenderSettings& settings, const Lighting& lights, const ShadowCache::Sources& sources) {
+  const bool follows_eye = std::any_of(lights.lights.begin(), lights.lights.end(),
+                                       [](const Light& light) { return light.kind == LightKind::kHeadlight; });
   Scene scene;
   scene.settings = settings;
   scene.settings.width = scene.settings.height = 1;
-  scene.camera = eye;
-  return format_scene(scene) + std::to_string(function);
+  scene.settings.lighting = lights;
+  if (follows_eye) scene.camera = sources.eye;
+  return format_scene(scene) + std::to_string(sources.function) + ", " + std::to_string(sources.clip_volumes);
 }
 
 }  // namespace
 
-void ShadowCache::prepare(const RenderSettings& settings, const ShadowedBody& body, const Camera& eye,
-                          std::uint64_t function, const DrawDepths& draw, const Progress& progress) {
+void ShadowCache::prepare(const RenderSettings& settings, const Sources& sources, const DrawDepths& draw,
+                          const Progress& progress) {
   const Lighting& lighting = settings.lighting;
   if (lighting.shadows == ShadowKind::kVolume) {
-    const bool follows_eye = std::any_of(lighting.lights.begin(), lighting.lights.end(),
-                                         [](const Light& light) { return light.kind == LightKind::kHeadlight; });
-    const std::string key = shadow_key(settings, follows_eye ? std::optional(eye) : std::nullopt, function);
+    Lighting seen;
+    seen.lights = lighting.lights;
+    seen.shadow_resolution = lighting.shadow_resolution;
+    const std::string key = shadow_key(settings, seen, sources);
     if (key != key_) {
       key_.clear();
-      lights_ = find_light_depths(settings, body, eye, draw);
+      lights_ = find_light_depths(settings, sources.body, sources.eye, draw);
       key_ = key;
     }
   }
   if (lighting.ambient_occlusion > 0) {
-    RenderSettings of_openness = settings;
-    of_openness.lighting.lights.clear();
-    const std::string key = shadow_key(of_openness, std::nullopt, function);
+    Lighting seen;
+    seen.shadow_resolution = lighting.shadow_resolution;
+    seen.ambient_occlusion = lighting.ambient_occlusion;
+    seen.occlusion_seed = lighting.occlusion_seed;
+    const std::string key = shadow_key(settings, seen, sources);
     if (key != openness_key_) {
       openness_key_.clear();
-      openness_ = cpu::find_openness(settings, body, draw, progress);
+      openness_ = cpu::find_openness(settings, sources.body, draw, progress);
       openness_key_ = key;
     }
   }
 }
 
+std::uint64_t ShadowCache::bytes() const {
+  std::uint64_t floats = openness_.records.size();
+  for (const std::vector<LightDepths>& light : lights_)
+    for (const LightDepths& view : light) floats += view.depths.size();
+  return floats * sizeof(float);
+}
+
 void ShadowCache::attach(const RenderSettings& settings, const ShadowedBody& body, const CameraFrame& camera,
                          Illustration& illustration) const {
   Shading& shading = illustration.shading;
-  shading.shadow_bias = find_shadow_bias(settings, body);
+  const float step = find_shadow_step(settings, body);
+  shading.shadow_bias = kBiasInSteps * step;
   if (settings.lighting.shadows != ShadowKind::kNone || settings.lighting.ambient_occlusion > 0)
-    illustration.effects.longest_lit = shading.shadow_bias;
+    illustration.effects.longest_lit = kLitInSteps * step;
   if (settings.lighting.shadows == ShadowKind::kVolume) {
     for (const std::vector<LightDepths>& light : lights_) {
       std::vector<ShadowMap>& maps = illustration.shadows.emplace_back();
@@ -166,7 +186,7 @@ void illustrate(const RenderSettings& settings, const IllustratedFrame& frame, I
     effects.weight_by_change = static_cast<float>(weight);
   if (settings.opacity_weight == OpacityWeight::kGradient)
     effects.weight_by_gradient = static_cast<float>(weight / frame.world_per_local);
-  if (effects.shading) effects.usual_light = 0.75f;
+  if (effects.shading) effects.usual_light = kUsualLight;
   effects.faint = static_cast<float>(settings.tolerance * kFaintOfTolerance);
 }
 

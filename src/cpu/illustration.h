@@ -58,12 +58,20 @@ void illustrate(const RenderSettings& settings, const IllustratedFrame& frame, I
 /// What lights see, from frame to frame as long as nothing changes.
 class ShadowCache {
  public:
-  /// Draws what is missing for these settings. `function`: changes with the transfer function.
-  void prepare(const RenderSettings& settings, const ShadowedBody& body, const Camera& eye, std::uint64_t function,
-               const DrawDepths& draw, const Progress& progress);
+  /// What shadows depend on beside the settings.
+  struct Sources {
+    ShadowedBody body;
+    Camera eye;
+    std::uint64_t function = 0;      ///< changes with the transfer function,
+    std::uint64_t clip_volumes = 0;  ///< with the grids that clip
+  };
+  /// Draws what is missing for these settings.
+  void prepare(const RenderSettings& settings, const Sources& sources, const DrawDepths& draw,
+               const Progress& progress);
   /// Hands it to a frame. Valid as long as this.
   void attach(const RenderSettings& settings, const ShadowedBody& body, const CameraFrame& camera,
               Illustration& illustration) const;
+  std::uint64_t bytes() const;
 
  private:
   std::string key_, openness_key_;

@@ -132,7 +132,7 @@ class MeshRenderer final : public FrameRenderer {
   std::uint64_t bytes() const override {
     return (vertices_ ? mesh_.vertices.size() * 4 * sizeof(float) : 0) + frame_bytes_ + antiderivative_.bytes() +
            control_points_.bytes() + gradients_.records.size() * sizeof(mesh::Gradient) +
-           centroids_.sums.size() * sizeof(std::int32_t);
+           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes();
   }
 
   Source source() const override { return Source::kWalk; }
@@ -210,15 +210,12 @@ void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, 
   if (has_effects) {
     require_effects(settings, mesh_.association == Association::kCell);
     prepare_effects(settings);
-    shadows_.prepare(
-        settings, shadowed_body(), camera, function_number_,
-        [&](const Camera& light, const RenderSettings& light_settings, const DepthRecord& record) {
-          Image unused{light_settings.width, light_settings.height, {}};
-          unused.pixels.resize(4 * static_cast<std::size_t>(unused.width) * unused.height);
-          RenderStatistics uncounted;
-          draw({light, light_settings, true, &record}, context, unused, uncounted);
-        },
-        context.progress);
+    const auto draw_depths = [&](const LightPass& pass, Image& unseen) {
+      RenderStatistics uncounted;
+      draw({pass.camera, pass.settings, true, &pass.record}, context, unseen, uncounted);
+    };
+    shadows_.prepare(settings, {shadowed_body(), camera, function_number_, context.clip_number}, draw_depths,
+                     context.progress);
   }
   draw({camera, settings, has_effects}, context, image, statistics);
 }

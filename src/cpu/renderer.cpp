@@ -19,6 +19,7 @@ struct Renderer::State {
   std::unique_ptr<cpu::FrameRenderer> frames;
   bool has_function = false;
   std::vector<const PreparedGrid*> clip_volumes = {};
+  std::uint64_t clip_number = 0;
 };
 
 namespace {
@@ -114,7 +115,7 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
     std::vector<const PreparedGrid*> volumes = state_->clip_volumes;
     volumes.resize(settings.clipping.shapes.size());
     require_clip_volumes(settings.clipping, volumes);
-    frames.render(camera, settings, {kernels, progress, volumes}, image, drawn);
+    frames.render(camera, settings, {kernels, progress, volumes, state_->clip_number}, image, drawn);
   });
   drawn.seconds = timer.seconds();
   drawn.threads = settings.threads > 0 ? settings.threads : support::hardware_threads();
@@ -126,6 +127,7 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
 void Renderer::set_clip_volume(std::size_t shape, const PreparedGrid& grid) {
   if (state_->clip_volumes.size() <= shape) state_->clip_volumes.resize(shape + 1);
   state_->clip_volumes[shape] = &grid;
+  ++state_->clip_number;
 }
 
 std::uint64_t Renderer::bytes() const { return state_->frames->bytes(); }

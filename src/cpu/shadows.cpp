@@ -12,7 +12,6 @@ namespace tetravox::cpu {
 namespace {
 
 constexpr int kMostOpennessPoints = 64;    // along the longest side
-constexpr double kBiasInSteps = 1.5;       // of the shadows' lattice
 constexpr double kWidestSingleView = 1.2;  // a near light in this many radii sees the body by six views
 
 struct Sphere {
@@ -143,12 +142,13 @@ LightDepths draw_light(const Camera& camera, int size, const RenderSettings& set
   support::require_memory(count * sizeof(float), "the shadows of a light");
   light.depths.assign(count, std::numeric_limits<float>::quiet_NaN());
 
-  RenderSettings depth_settings = settings;
-  depth_settings.width = depth_settings.height = size;
-  depth_settings.lighting = {};
-  depth_settings.wants_depth = false;
-  depth_settings.use_early_ray_termination = false;
-  draw(camera, depth_settings, {light.depths.data(), size, size, size, light.z_first, light.slices_per_z});
+  LightPass pass{camera, settings, {light.depths.data(), size, size, size, light.z_first, light.slices_per_z}};
+  pass.settings.width = pass.settings.height = size;
+  pass.settings.lighting = {};
+  pass.settings.wants_depth = false;
+  pass.settings.use_early_ray_termination = false;
+  Image unseen{size, size, std::vector<float>(4 * static_cast<std::size_t>(size) * size)};
+  draw(pass, unseen);
   complete_depths(light);
   return light;
 }
@@ -318,9 +318,9 @@ OcclusionMap make_occlusion_map(const Openness& openness, const ShadowedBody& bo
   return map;
 }
 
-float find_shadow_bias(const RenderSettings& settings, const ShadowedBody& body) {
+float find_shadow_step(const RenderSettings& settings, const ShadowedBody& body) {
   const double diameter = 2.0 * sphere_around(body.bounds).radius / body.world_per_local;
-  return static_cast<float>(kBiasInSteps * diameter / settings.lighting.shadow_resolution);
+  return static_cast<float>(diameter / settings.lighting.shadow_resolution);
 }
 
 }  // namespace tetravox::cpu

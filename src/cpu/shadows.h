@@ -30,8 +30,14 @@ struct LightDepths {
   std::vector<float> depths;  ///< [size][size][size]: step, row, column
 };
 
-/// Draws the data from a camera, and writes optical depths down (see DepthRecord).
-using DrawDepths = std::function<void(const Camera& camera, const RenderSettings& settings, const DepthRecord& record)>;
+/// The data seen by a light: a frame that writes optical depths down.
+struct LightPass {
+  Camera camera;
+  RenderSettings settings;
+  DepthRecord record;
+};
+/// Draws a pass; nobody looks at the colours.
+using DrawDepths = std::function<void(const LightPass& pass, Image& unseen)>;
 
 /// What each light sees (none for lights without shadows), for `Lighting::shadows` = kVolume.
 std::vector<std::vector<LightDepths>> find_light_depths(const RenderSettings& settings, const ShadowedBody& body,
@@ -55,7 +61,7 @@ Openness find_openness(const RenderSettings& settings, const ShadowedBody& body,
 /// The map of an openness for places in the frame of a camera. Views `openness`.
 OcclusionMap make_occlusion_map(const Openness& openness, const ShadowedBody& body, const CameraFrame& camera);
 
-/// Local length by which surfaces are moved off themselves.
-float find_shadow_bias(const RenderSettings& settings, const ShadowedBody& body);
+/// Local length from ray to ray of a light, and from step to step along it, about.
+float find_shadow_step(const RenderSettings& settings, const ShadowedBody& body);
 
 }  // namespace tetravox::cpu

@@ -4,6 +4,8 @@
 ///
 /// Include it only where a file is parsed: nlohmann's JSON compiles slowly.
 
+#include "tetravox/error.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
@@ -58,6 +60,17 @@ class JsonPlace {
   const std::string* source_;
   std::string path_;
 };
+
+/// Calls `action`; what it throws is told as an error of the file, at `place`.
+template <class Action>
+auto at_place(const JsonPlace& place, const Action& action) {
+  try {
+    return action();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kInvalidArgument) throw;
+    place.fail(error.what());
+  }
+}
 
 /// The word of `known` that is at most two edits from `word`; empty where there is none.
 std::string_view nearest_word(std::string_view word, std::initializer_list<std::string_view> known);

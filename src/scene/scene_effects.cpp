@@ -10,19 +10,9 @@
 namespace tetravox::scene {
 namespace {
 
+using optics::at_place;
 using optics::JsonPlace;
 using Json = nlohmann::ordered_json;
-
-/// Calls `action`; what it throws is told as an error of the file, at `place`.
-template <class Action>
-auto at_place(const JsonPlace& place, const Action& action) {
-  try {
-    return action();
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::kInvalidArgument) throw;
-    place.fail(error.what());
-  }
-}
 
 void read_number(const JsonPlace& place, const char* key, double& value) {
   if (const auto member = place.find(key)) value = member->number();

@@ -10,6 +10,7 @@
 namespace tetravox {
 namespace {
 
+using optics::at_place;
 using optics::JsonPlace;
 using Json = nlohmann::ordered_json;
 
@@ -20,17 +21,6 @@ constexpr int kLargestComponentCount = 4;
 constexpr long long kLargestDimension = 0xFFFFFFFE;
 constexpr long long kLargestHeader = 1LL << 53;
 constexpr double kLargestRate = 64.0;  // samples per voxel
-
-/// Calls `action`; what it throws is told as an error of the file, at `place`.
-template <class Action>
-auto at_place(const JsonPlace& place, const Action& action) {
-  try {
-    return action();
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::kInvalidArgument) throw;
-    place.fail(error.what());
-  }
-}
 
 void read_time(const JsonPlace& place, TimeRequest& time) {
   place.require_keys({"index", "value"});

@@ -1,5 +1,6 @@
 /// Clipped bodies in closed form: planes, boxes, spheres, volumes, and what several of them leave.
 
+#include "tests/analytic/cube.h"
 #include "tests/analytic/light_model.h"
 #include "tests/analytic/show.h"
 #include "tests/common/grid_builder.h"
@@ -15,12 +16,6 @@
 
 namespace tetravox::analytic {
 namespace {
-
-const Vector3 kLower{-1, -1, -1};
-const Vector3 kUpper{1, 1, 1};
-const Color kColor{0.9, 0.6, 0.3};
-constexpr double kExtinction = 1.3;
-const OpticalFunction kHomogeneous{{{0.0, kExtinction, kColor}}};
 
 bool contains(const ClipPlane& plane, const Vector3& p) { return dot(difference(p, plane.origin), plane.normal) >= 0; }
 bool contains(const ClipBox& box, const Vector3& p) {

@@ -1,5 +1,6 @@
 /// Lit volumes: against the model in double precision, and what must not change a picture.
 
+#include "tests/analytic/cube.h"
 #include "tests/analytic/light_model.h"
 #include "tests/analytic/show.h"
 #include "tests/common/functions.h"
@@ -17,12 +18,6 @@
 
 namespace tetravox::analytic {
 namespace {
-
-const Vector3 kLower{-1, -1, -1};
-const Vector3 kUpper{1, 1, 1};
-const Color kColor{0.9, 0.6, 0.3};
-constexpr double kExtinction = 1.3;
-const OpticalFunction kHomogeneous{{{0.0, kExtinction, kColor}}};
 
 double linear_field(const Vector3& p) { return 0.5 + 0.2 * p[0] + 0.15 * p[1] - 0.1 * p[2]; }
 const Vector3 kSlope{0.2, 0.15, -0.1};
@@ -44,18 +39,7 @@ Lighting make_lights() {
 class Lit : public ::testing::TestWithParam<bool> {
  protected:
   static bool is_grid() { return GetParam(); }
-  static tests::Body cube(int cells, const tests::Field& field) {
-    if (is_grid()) {
-      tests::GridOptions options;
-      const auto points = static_cast<std::uint32_t>(cells + 1);
-      options.dimensions = {points, points, points};
-      return tests::make_grid(options, field);
-    }
-    tests::BoxOptions options;
-    options.bricks = {cells, cells, cells};
-    options.type = CellType::kTetrahedron;
-    return tests::make_box(options, field);
-  }
+  static tests::Body cube(int cells, const tests::Field& field) { return make_cube(is_grid(), cells, field); }
   static RenderSettings make_settings(double tolerance) {
     RenderSettings settings = make_careful_settings(Integrator::kAntiderivative);
     settings.tolerance = tolerance;
@@ -289,6 +273,29 @@ TEST_P(Lit, WhatShadowsDependOnIsSeenAgain) {
   expect_fresh("occlusion");
   settings.lighting.occlusion_seed = 7;
   expect_fresh("occlusion's seed");
+}
+
+TEST_P(Lit, AnotherClipVolumeThrowsAnotherShadow) {
+  const tests::Body body = cube(12, linear_field);
+  const Camera camera = standard_cameras()[0].second;
+  RenderSettings settings = make_settings(1e-3);
+  settings.lighting.shadows = ShadowKind::kVolume;
+  settings.lighting.shadow_resolution = 32;
+  settings.lighting.lights = {directional({1, 0, 0})};
+  settings.lighting.ambient_occlusion = 4;
+  settings.clipping.shapes = {{ClipVolume{"a.nrrd", "", 0.0}, true}};
+  const auto sphere_grid = [](double radius) {
+    return prepare_grid(tests::make_grid({}, [radius](const Vector3& p) { return radius - norm(p); }));
+  };
+  const PreparedGrid large = sphere_grid(0.9), small = sphere_grid(0.5);
+  Renderer kept = body.make_renderer(), fresh = body.make_renderer();
+  kept.set_transfer_function(kHomogeneous);
+  fresh.set_transfer_function(kHomogeneous);
+  kept.set_clip_volume(0, large);
+  kept.render(camera, settings);
+  kept.set_clip_volume(0, small);
+  fresh.set_clip_volume(0, small);
+  EXPECT_TRUE(tests::images_equal(kept.render(camera, settings), fresh.render(camera, settings)));
 }
 
 TEST_P(Lit, OpacityFollowsTheScalarsChange) {

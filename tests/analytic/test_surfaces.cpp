@@ -1,5 +1,6 @@
 /// Iso-surfaces in closed form: spheres in the field of a distance, sheets in linear fields, no holes.
 
+#include "tests/analytic/cube.h"
 #include "tests/analytic/light_model.h"
 #include "tests/analytic/show.h"
 #include "tests/common/grid_builder.h"
@@ -17,26 +18,13 @@
 namespace tetravox::analytic {
 namespace {
 
-const Vector3 kLower{-1, -1, -1};
-const Vector3 kUpper{1, 1, 1};
 const OpticalFunction kNothing{{{0.0, 0.0, {0, 0, 0}}}};
 
 /// Grids and meshes of [-1, 1]^3.
 class Surfaces : public ::testing::TestWithParam<bool> {
  protected:
   static bool is_grid() { return GetParam(); }
-  static tests::Body cube(int cells, const tests::Field& field) {
-    if (is_grid()) {
-      tests::GridOptions options;
-      const auto points = static_cast<std::uint32_t>(cells + 1);
-      options.dimensions = {points, points, points};
-      return tests::make_grid(options, field);
-    }
-    tests::BoxOptions options;
-    options.bricks = {cells, cells, cells};
-    options.type = CellType::kTetrahedron;
-    return tests::make_box(options, field);
-  }
+  static tests::Body cube(int cells, const tests::Field& field) { return make_cube(is_grid(), cells, field); }
   static RenderSettings make_settings(int width, int height) {
     RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, width, height);
     settings.tolerance = 1e-4;

@@ -69,24 +69,11 @@ struct CellStretch {
   HWY_INLINE Triple gradient(Float u) const {
     Float t[3];
     find_place(u, t);
-    const auto mixed = [](Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); };
     if (job.brick->gradients) return interpolate_gradients(t);
-    // The derivative of the trilinear field.
-    const Record &low = corners.low, &high = corners.high;
-    const auto difference = [&](const Record& r) { return mixed(t[1], hn::Sub(r.y, r.x), hn::Sub(r.w, r.z)); };
-    const auto along_x = [&](const Record& r, Float& near, Float& far) {
-      near = mixed(t[0], r.x, r.y);
-      far = mixed(t[0], r.z, r.w);
-    };
-    Float low_near, low_far, high_near, high_far;
-    along_x(low, low_near, low_far);
-    along_x(high, high_near, high_far);
-    const Float x = mixed(t[2], difference(low), difference(high));
-    const Float y = mixed(t[2], hn::Sub(low_far, low_near), hn::Sub(high_far, high_near));
-    const Float z = hn::Sub(mixed(t[1], high_near, high_far), mixed(t[1], low_near, low_far));
+    const Triple slope = find_slope(corners.low, corners.high, t);
     Float size[3];
     rays.find_cell_size(size);
-    return {hn::Div(x, size[0]), hn::Div(y, size[1]), hn::Div(z, size[2])};
+    return {hn::Div(slope.x, size[0]), hn::Div(slope.y, size[1]), hn::Div(slope.z, size[2])};
   }
 
  private:
@@ -110,14 +97,7 @@ struct CellStretch {
     const std::int32_t row_nodes = brick.cells[0] + 1, slice_nodes = row_nodes * (brick.cells[1] + 1);
     const Float more = multiply_add(slice, constant(static_cast<float>(slice_nodes) - slice_cells), row);
     const Uint node = hn::BitCast(kUint, hn::Add(rays.cell, hn::ConvertTo(kInt, more)));
-    const auto load = [&](std::int32_t offset) {
-      const Record r =
-          load_table_records(brick.gradients, hn::Add(node, hn::Set(kUint, static_cast<std::uint32_t>(offset))));
-      return Triple{r.x, r.y, r.z};
-    };
-    const auto edge = [&](std::int32_t offset) { return mix(t[0], load(offset), load(offset + 1)); };
-    const auto square = [&](std::int32_t offset) { return mix(t[1], edge(offset), edge(offset + row_nodes)); };
-    return mix(t[2], square(0), square(slice_nodes));
+    return mix_gradients(brick.gradients, node, row_nodes, slice_nodes, t);
   }
 };
 
@@ -238,9 +218,7 @@ class EffectMarcher {
       CellCubic cubic = make_cubic(corners, rays, back);
       Float length = hn::IfThenElseZero(rays.alive, hn::Mul(hn::Sub(back, rays.front), rays.world_per_z));
       if (HWY_UNLIKELY(brick_.has_missing)) {
-        const Mask missing = corners.is_missing();
-        cubic.clear(missing);
-        length = hn::IfThenZeroElse(missing, length);
+        leave_out_missing(corners, cubic, length);
         scalar_front = cubic.c0;
         front = integrator_.front_at(scalar_front);
       }

@@ -42,7 +42,7 @@ class EffectIntegrator {
     return is_light_all_ && (HWY_LIKELY(effects_.surfaces.empty()) || !meets_surface(segment));
   }
 
-  /// A whole linear stretch, which `make_walk` makes only where it needs light.
+  /// A whole linear stretch. It is only made where it needs light.
   template <class MakeStretch, class MakeRay>
   HWY_INLINE void integrate_lit_segment(const Segments& segment, const MakeStretch& make_stretch,
                                         const MakeRay& make_ray, Front& front, Accumulated& sum) const {

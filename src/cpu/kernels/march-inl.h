@@ -83,6 +83,13 @@ HWY_INLINE Float find_steepness(const optics::SteepnessTable& table, Float low, 
                  hn::GatherIndex(kFloat, values, hn::Add(row, end)));
 }
 
+/// A cell with a corner that is missing is transparent; behind it the ray sets out anew.
+HWY_NOINLINE inline void leave_out_missing(const CellCorners& corners, CellCubic& cubic, Float& length) {
+  const Mask missing = corners.is_missing();
+  cubic.clear(missing);
+  length = hn::IfThenZeroElse(missing, length);
+}
+
 /// Trilinear cells.
 template <class Integrator>
 class Marcher {
@@ -120,13 +127,6 @@ class Marcher {
       rays.advance(back);
     }
     store_accumulated(sum, job_, first, count);
-  }
-
-  /// A cell with a corner that is missing is transparent; behind it the ray sets out anew.
-  static HWY_NOINLINE void leave_out_missing(const CellCorners& corners, CellCubic& cubic, Float& length) {
-    const Mask missing = corners.is_missing();
-    cubic.clear(missing);
-    length = hn::IfThenZeroElse(missing, length);
   }
 
   /// Integrates the cubic in as many linear pieces as its distance from the chord, the steepness of the function and

@@ -2,11 +2,11 @@
 //
 // A source hands over stretches: what a vector of rays passes in its cells, u from 0 at the front to 1 at the back.
 // A stretch offers
-//   Float scalar_front, scalar_back, z_front, z_back, length   length in world units, 0 where a ray takes no part
-//   Float scalar(Float u)                                      strictly inside
-//   static constexpr bool kIsLinear; and where it is not: void find_extrema(Float extrema[2]); Float bend(),
-//   slope(Float u) Float count_pieces(from, to, transmittance)                linear pieces that the tolerance asks for
-//   Triple gradient(Float u)
+// - Float scalar_front, scalar_back, z_front, z_back, length: length in world units, 0 where a ray takes no part;
+// - Float scalar(Float u): strictly inside;
+// - Triple gradient(Float u);
+// - static constexpr bool kIsLinear, and where it is not: void find_extrema(Float extrema[2]), Float bend(),
+// - Float slope(Float u), Float count_pieces(from, to, transmittance): linear pieces that the tolerance asks for.
 
 #if defined(TETRAVOX_CPU_STRETCHES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETRAVOX_CPU_STRETCHES_INL

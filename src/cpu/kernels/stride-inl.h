@@ -21,6 +21,29 @@ HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
 
+/// The derivative of a trilinear cell along the lattice's axes, at `t` in it.
+HWY_INLINE Triple find_slope(const Record& low, const Record& high, const Float t[3]) {
+  const auto mixed = [](Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); };
+  const auto along_x = [&](const Record& r) { return mixed(t[1], hn::Sub(r.y, r.x), hn::Sub(r.w, r.z)); };
+  const auto along_y = [&](const Record& r) { return hn::Sub(mixed(t[0], r.z, r.w), mixed(t[0], r.x, r.y)); };
+  const auto square = [&](const Record& r) { return mixed(t[1], mixed(t[0], r.x, r.y), mixed(t[0], r.z, r.w)); };
+  return {mixed(t[2], along_x(low), along_x(high)), mixed(t[2], along_y(low), along_y(high)),
+          hn::Sub(square(high), square(low))};
+}
+
+/// Gradients at the corners of a cell (MarchBrick::gradients), trilinear in between: `node` is its lower corner, `row`
+/// and `slice` nodes lie in a row and in a slice.
+HWY_INLINE Triple mix_gradients(const float* gradients, Uint node, std::int32_t row, std::int32_t slice,
+                                const Float t[3]) {
+  const auto load = [&](std::int32_t offset) {
+    const Record r = load_table_records(gradients, hn::Add(node, hn::Set(kUint, static_cast<std::uint32_t>(offset))));
+    return Triple{r.x, r.y, r.z};
+  };
+  const auto edge = [&](std::int32_t offset) { return mix(t[0], load(offset), load(offset + 1)); };
+  const auto square = [&](std::int32_t offset) { return mix(t[1], edge(offset), edge(offset + row)); };
+  return mix(t[2], square(0), square(slice));
+}
+
 /// The trilinear field of an even brick anywhere inside it.
 class LatticeSampler {
  public:
@@ -47,12 +70,7 @@ class LatticeSampler {
     Float cell[3], t[3];
     find_cell(at, cell, t);
     const Uint record = number_of(cell, row_, layer_);
-    const Record low = load_table_records(records_, record), high = load_table_records(records_ + slice_, record);
-    const auto along_x = [&](const Record& r) { return mixed(t[1], hn::Sub(r.y, r.x), hn::Sub(r.w, r.z)); };
-    const auto along_y = [&](const Record& r) { return hn::Sub(mixed(t[0], r.z, r.w), mixed(t[0], r.x, r.y)); };
-    const auto square = [&](const Record& r) { return mixed(t[1], mixed(t[0], r.x, r.y), mixed(t[0], r.z, r.w)); };
-    return {mixed(t[2], along_x(low), along_x(high)), mixed(t[2], along_y(low), along_y(high)),
-            hn::Sub(square(high), square(low))};
+    return find_slope(load_table_records(records_, record), load_table_records(records_ + slice_, record), t);
   }
 
   /// Gradients at the nodes (MarchBrick::gradients), trilinear in between.
@@ -61,14 +79,7 @@ class LatticeSampler {
     find_cell(at, cell, t);
     const float row = row_ + 1.0f, layer = row * (rows_ + 1.0f);
     const Uint node = number_of(cell, row, layer);
-    const auto row_nodes = static_cast<std::uint32_t>(row), layer_nodes = static_cast<std::uint32_t>(layer);
-    const auto load = [&](std::uint32_t offset) {
-      const Record r = load_table_records(gradients, hn::Add(node, hn::Set(kUint, offset)));
-      return Triple{r.x, r.y, r.z};
-    };
-    const auto edge = [&](std::uint32_t offset) { return mix(t[0], load(offset), load(offset + 1)); };
-    const auto square = [&](std::uint32_t offset) { return mix(t[1], edge(offset), edge(offset + row_nodes)); };
-    return mix(t[2], square(0), square(layer_nodes));
+    return mix_gradients(gradients, node, static_cast<std::int32_t>(row), static_cast<std::int32_t>(layer), t);
   }
 
  private:

@@ -225,6 +225,12 @@ TEST(EffectRoundTrip, AreWrittenOnlyWhenTheySaySomething) {
   EXPECT_NE(format_scene(scene).find("\"ambient_occlusion\": 8"), std::string::npos);
 }
 
+TEST(EffectRoundTrip, OneColourServesBothSides) {
+  const Scene scene = parse(R"("surfaces":[{"value":1,"color":[0.1,0.2,0.3]}])");
+  EXPECT_EQ(scene.settings.surfaces.at(0).front_color, (Color{0.1, 0.2, 0.3}));
+  EXPECT_EQ(scene.settings.surfaces.at(0).back_color, (Color{0.1, 0.2, 0.3}));
+}
+
 TEST(EffectRoundTrip, SayWhatIsWrongAboutLighting) {
   const auto expect_bad_lighting = [](const std::string& members, const char* where, const char* what) {
     expect_bad("\"lighting\":{" + members + "}", where, what);
@@ -271,6 +277,7 @@ TEST(EffectRoundTrip, SayWhatIsWrongAboutSurfacesAndClipping) {
   expect_bad_shape(R"({"box":[[0,1],[0,1],[0,1]],"keep":"both"})", "clipping.shapes[0].keep", "\"outside\"");
   expect_bad_shape(R"({"box":[[0,1],[0,1]]})", "clipping.shapes[0].box", "three pairs");
   expect_bad_shape(R"({"box":[[0,1],[0,1],[1,1]]})", "clip shape 0, box", "ascend");
+  expect_bad_shape(R"({"box":[[0,1],[1,0],[0,1]]})", "clip shape 0, box", "ascend");
   expect_bad_shape(R"({"plane":{"origin":[0,0,0]}})", "clipping.shapes[0].plane", "'normal'");
   expect_bad_shape(R"({"plane":{"origin":[0,0,0],"normal":[0,0,0]}})", "clip shape 0, normal", "not all 0");
   expect_bad_shape(R"({"sphere":{"center":[0,0,0],"radius":0}})", "clip shape 0, radius", "above 0");
