@@ -28,6 +28,16 @@ struct Illumination {
   }
 };
 
+/// A headlight, a far and a near light.
+inline Lighting make_lights() {
+  Lighting lighting;
+  lighting.lights = {{LightKind::kHeadlight, {}, {}, {0.5, 0.4, 0.3}, 0.8},
+                     {LightKind::kDirectional, {-1.0, 2.0, -1.5}, {}, {0.2, 0.4, 0.6}, 1.0},
+                     {LightKind::kPoint, {}, {2.0, -1.0, 3.0}, {0.6, 0.1, 0.1}, 0.7}};
+  lighting.material = {0.2, 0.6, 0.4, 12.0};
+  return lighting;
+}
+
 /// How much of a light reaches a place.
 using Visibility = std::function<double(const Light&, const Vector3&)>;
 

@@ -25,16 +25,6 @@ double square_norm(const Vector3& p) { return dot(p, p); }
 
 Light directional(const Vector3& direction) { return {LightKind::kDirectional, direction, {}, {1, 1, 1}, 1.0}; }
 
-/// A headlight, a far and a near light.
-Lighting make_lights() {
-  Lighting lighting;
-  lighting.lights = {{LightKind::kHeadlight, {}, {}, {0.5, 0.4, 0.3}, 0.8},
-                     {LightKind::kDirectional, {-1.0, 2.0, -1.5}, {}, {0.2, 0.4, 0.6}, 1.0},
-                     {LightKind::kPoint, {}, {2.0, -1.0, 3.0}, {0.6, 0.1, 0.1}, 0.7}};
-  lighting.material = {0.2, 0.6, 0.4, 12.0};
-  return lighting;
-}
-
 /// Grids and meshes of [-1, 1]^3.
 class Lit : public ::testing::TestWithParam<bool> {
  protected:

@@ -98,15 +98,6 @@ TEST_P(Surfaces, SphereIsAtItsDepthWithoutHoles) {
   }
 }
 
-Lighting make_lights() {
-  Lighting lighting;
-  lighting.lights = {{LightKind::kHeadlight, {}, {}, {0.5, 0.4, 0.3}, 0.8},
-                     {LightKind::kDirectional, {-1.0, 2.0, -1.5}, {}, {0.2, 0.4, 0.6}, 1.0},
-                     {LightKind::kPoint, {}, {2.0, -1.0, 3.0}, {0.6, 0.1, 0.1}, 0.7}};
-  lighting.material = {0.2, 0.6, 0.4, 12.0};
-  return lighting;
-}
-
 /// Largest difference between the lit sphere and its closed form, a border of its silhouette left out.
 double lit_sphere_error(const tests::Body& body, const Camera& camera, const RenderSettings& settings) {
   const Image image = body.draw(kNothing, camera, settings);
