@@ -121,6 +121,13 @@ struct DatasetInfo {
   std::vector<std::string> notes;    ///< one-line remarks that a user should see
 };
 
+/// A further field of a mesh, at the same points or cells as the one that is drawn.
+struct OtherField {
+  std::span<const double> scalars;  ///< [points] or [cells], as `MeshData::scalars`
+  std::string array_name;
+  int component = 0;  ///< component of the array, or `kMagnitude`
+};
+
 /// Views of a mesh and of the scalar field to draw. Ids are below 2^32 - 1. Immutable; safe to read from many threads.
 struct MeshData {
   std::span<const double> points;               ///< [points][3], world coordinates
@@ -132,8 +139,9 @@ struct MeshData {
   std::span<const double>
       scalars;  ///< [points] or [cells] by `association`; a value that is not finite counts as missing
   Association association = Association::kPoint;
-  std::string array_name;  ///< what `scalars` holds
-  int component = 0;       ///< component of the array, or `kMagnitude`
+  std::string array_name;          ///< what `scalars` holds
+  int component = 0;               ///< component of the array, or `kMagnitude`
+  std::vector<OtherField> others;  ///< for functions of several variables (multidimensional.h)
   std::shared_ptr<const void> storage;
 
   std::size_t point_count() const { return points.size() / 3; }
@@ -163,6 +171,7 @@ struct Dataset {
   DatasetInfo info;
   MeshData mesh;
   GridData grid;
+  std::vector<GridData> other_grids;  ///< further fields of a grid: the same shape and association
 
   bool is_grid() const { return info.grid.has_value(); }
 };

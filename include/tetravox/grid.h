@@ -72,6 +72,7 @@ struct PreparedGrid {
   ValueRange scalar_range;           ///< of the finite values
   std::array<ValueRange, 3> bounds;  ///< world units
   std::uint64_t missing_values = 0;  ///< values that are not finite: the cells around are transparent
+  std::vector<PreparedGrid> others;  ///< further fields of the same shape and association
 };
 
 /// Checks the grid and summarises its bricks: one pass over the values. Deterministic.

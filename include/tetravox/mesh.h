@@ -55,6 +55,13 @@ struct PrepareReport {
   std::uint64_t boundary_faces = 0;
 };
 
+/// A further field, stored like the first.
+struct OtherScalars {
+  std::vector<float> scalars;  ///< [vertices], or [cells] with cell data
+  double offset = 0.0, scale = 1.0;
+  ValueRange range;  ///< of the values
+};
+
 /// Tetrahedra with adjacency, in space-filling order. Immutable once made; safe to read from many threads.
 ///
 /// Frames: world = origin + local * world_per_local, with `origin` the middle of the bounds, so that |local| <= 1:
@@ -71,6 +78,7 @@ struct PreparedMesh {
   double scalar_offset = 0.0;
   double scalar_scale = 1.0;
   ValueRange scalar_range;           ///< of the values drawn (not of the stored scalars)
+  std::vector<OtherScalars> others;  ///< of `MeshData::others`
   std::array<ValueRange, 3> bounds;  ///< world units, of the cells drawn
   Association association = Association::kPoint;
   PrepareReport report;
