@@ -59,9 +59,10 @@ class EffectIntegrator {
     const auto stretch = make_stretch();
     const RayView ray = make_ray();
     Float unused = constant(0.0f);
+    const Float opacity = hn::Div(absorbed, hn::Max(sum.transmittance, constant(1e-30f)));
     const Walk<std::remove_const_t<decltype(stretch)>> walk{stretch, ray, front, sum, unused};
     light(walk, {constant(0.0f), segment.scalar_front}, {constant(1.0f), segment.scalar_back},
-          find_emission(effects_.centroid, segment, opacity_of(sum, part)), bright, part);
+          find_emission(effects_.centroid, segment, opacity), bright, part);
   }
 
   /// The part of a stretch from `from` to `to`. `front`: at `from`; becomes that at `to`. `depth`: see
@@ -226,14 +227,14 @@ class EffectIntegrator {
 
   /// Where pieces absorb: sums of what they absorb times where that is, and times its square; changes of colour.
   struct Emission {
-    Float moment, second, tint;
+    Float moment, second, tint, unevenness;
 
     /// The whole of them, of which `absorbed` is the sum.
     HWY_INLINE Spread spread(Float absorbed) const {
       const Float share = hn::Div(constant(1.0f), hn::Max(absorbed, constant(1e-30f)));
       const Float mean = hn::Mul(moment, share);
       const Float variance = hn::Sub(hn::Mul(second, share), hn::Mul(mean, mean));
-      return {mean, hn::Max(variance, constant(0.0f)), hn::Min(tint, constant(1.0f))};
+      return {mean, hn::Max(variance, constant(0.0f)), hn::Min(tint, constant(1.0f)), unevenness};
     }
   };
 
@@ -275,19 +276,20 @@ class EffectIntegrator {
     if (emission) {
       const Float absorbed = hn::Sub(before, sum.transmittance);
       const Mask is_bright = hn::Gt(absorbed, constant(effects_.faint));
-      Spread inside{constant(0.5f), constant(1.0f / 12.0f), constant(0.0f)};
+      Spread inside{constant(0.5f), constant(1.0f / 12.0f), constant(0.0f), constant(0.0f)};
       if (!hn::AllFalse(kFloat, is_bright)) {
         const Float opacity = hn::Div(absorbed, hn::Max(before, constant(1e-30f)));
         const Spread found = find_emission(effects_.centroid, segment, opacity);
         inside = {hn::IfThenElse(is_bright, found.center, inside.center),
-                  hn::IfThenElse(is_bright, found.variance, inside.variance),
-                  hn::IfThenElse(is_bright, found.tint, inside.tint)};
+                  hn::IfThenElse(is_bright, found.variance, inside.variance), hn::IfThenElseZero(is_bright, found.tint),
+                  hn::IfThenElseZero(is_bright, found.unevenness)};
       }
       const Float place = multiply_add(inside.center, part, a.u), moment = hn::Mul(absorbed, place);
       const Float variance = hn::Mul(inside.variance, hn::Mul(part, part));
       emission->moment = hn::Add(emission->moment, moment);
       emission->second = hn::Add(emission->second, multiply_add(moment, place, hn::Mul(absorbed, variance)));
       emission->tint = hn::Add(emission->tint, inside.tint);
+      emission->unevenness = hn::Max(emission->unevenness, inside.unevenness);
     }
     if (effects_.depth) note_depth(walk, a, b, before, sum.transmittance);
     if (HWY_UNLIKELY(effects_.record != nullptr)) {
@@ -363,7 +365,8 @@ class EffectIntegrator {
   template <class Stretch>
   HWY_INLINE Gathered gather(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
     const Float zero = constant(0.0f);
-    Gathered gathered{{zero, zero, zero, walk.sum.transmittance}, {zero, zero, zero}, zero, hn::FirstN(kFloat, 0)};
+    Gathered gathered{
+        {zero, zero, zero, walk.sum.transmittance}, {zero, zero, zero, zero}, zero, hn::FirstN(kFloat, 0)};
     integrate_pieces(walk, begin, end, gathered.part, &gathered.emission);
     gathered.absorbed = hn::Sub(walk.sum.transmittance, gathered.part.transmittance);
     gathered.bright = hn::Gt(gathered.absorbed, constant(effects_.faint));
@@ -380,52 +383,88 @@ class EffectIntegrator {
       light(walk, begin, end, gathered.emission.spread(gathered.absorbed), gathered.bright, gathered.part);
   }
 
-  /// Adds `part`, what has been gathered between two cuts, in one light; or, where normals turn too much for that,
-  /// gathers it again in shorter parts with a light each.
+  /// Where light is looked up between two cuts: at two places that, weighted, have mean and variance of the emission,
+  /// so that what is quadratic along the ray is exact. They are one where that serves.
+  struct LitPlaces {
+    Float near, far, far_weight;
+    bool are_one;
+  };
+  HWY_INLINE LitPlaces find_lit_places(const Cut& begin, const Cut& end, const Spread& emission, Mask bright,
+                                       Float absorbed) const {
+    const Float zero = constant(0.0f), tiny = constant(1e-6f);
+    const Float center = hn::Min(hn::Max(emission.center, begin.u), end.u);
+    const Mask apart = hn::And(bright, hn::Gt(absorbed, constant(effects_.lit_once)));
+    if (hn::AllFalse(kFloat, apart)) return {center, center, zero, true};
+    // As far apart as the deviation, on either side; where an end is nearer, the other place is farther.
+    const Float deviation = hn::IfThenElseZero(apart, hn::Sqrt(emission.variance));
+    const Float to_begin = hn::Max(hn::Sub(center, begin.u), tiny), to_end = hn::Max(hn::Sub(end.u, center), tiny);
+    const Float square = hn::Mul(deviation, deviation);
+    const Float before = hn::Min(hn::Max(deviation, hn::Div(square, to_end)), to_begin);
+    const Float after = hn::Min(hn::Max(deviation, hn::Div(square, to_begin)), to_end);
+    const Float weight = hn::Div(before, hn::Max(hn::Add(before, after), tiny));
+    return {hn::Max(hn::Sub(center, before), begin.u), hn::Min(hn::Add(center, after), end.u), weight, false};
+  }
+
+  /// The light at two places of a stretch.
+  struct LitPair {
+    Triple near_gradient, far_gradient;
+    Illumination near, far;
+  };
+  template <class Stretch>
+  HWY_INLINE LitPair look_up_light(const Walk<Stretch>& walk, const GradientCourse<Stretch>& gradients,
+                                   const LitPlaces& places, Mask bright) const {
+    const RayView& ray = walk.ray;
+    const auto light_of = [&](Float u, const Triple& gradient) {
+      if (is_lit_from_eye_) return illuminate_from_eye(*effects_.shading, gradient, ray.direction());
+      const Triple place = ray.position(depth_at(walk.stretch, u));
+      return illuminate(*effects_.shading, {place, gradient, ray.to_eye(), bright, false});
+    };
+    const Triple near_gradient = gradients.at(places.near);
+    const Illumination near = light_of(places.near, near_gradient);
+    if (places.are_one) return {near_gradient, near_gradient, near, near};
+    const Triple far_gradient = gradients.at(places.far);
+    return {near_gradient, far_gradient, near, light_of(places.far, far_gradient)};
+  }
+
+  /// Adds `part`, what has been gathered between two cuts; or, where normals turn too much for two places, gathers it
+  /// again in shorter parts.
   template <class Stretch>
   HWY_INLINE void light(const Walk<Stretch>& walk, const Cut& begin, const Cut& end, const Spread& emission,
                         Mask bright, const Accumulated& part) const {
+    const Float one = constant(1.0f), absorbed = hn::Sub(walk.sum.transmittance, part.transmittance);
     const GradientCourse<Stretch> gradients(walk.stretch, effects_.camera_from_gradient);
-    const Float count = count_lit_parts(gradients, begin, end, emission, bright, part, walk.sum);
-    if (HWY_LIKELY(hn::AllTrue(kFloat, hn::Le(count, constant(1.0f)))))
-      add_lit(walk, gradients, inside(begin, end, emission.center), bright, part);
-    else
-      integrate_turning(walk, gradients, begin, end, count);
+    const LitPlaces places = find_lit_places(begin, end, emission, bright, absorbed);
+    const LitPair lights = look_up_light(walk, gradients, places, bright);
+    if (!places.are_one) {
+      const Float count = hn::IfThenElse(bright, count_lit_parts(lights, emission, absorbed), one);
+      if (!hn::AllTrue(kFloat, hn::Le(count, one))) return integrate_turning(walk, gradients, begin, end, count);
+    }
+    add_lit(lights, places.far_weight, bright, part, walk.sum);
   }
 
-  static HWY_INLINE Float inside(const Cut& begin, const Cut& end, Float u) {
-    return hn::Min(hn::Max(u, begin.u), end.u);
-  }
-  static HWY_INLINE Float opacity_of(const Accumulated& before, const Accumulated& after) {
-    const Float absorbed = hn::Sub(before.transmittance, after.transmittance);
-    return hn::Div(absorbed, hn::Max(before.transmittance, constant(1e-30f)));
-  }
-
-  /// How many lights it takes between two cuts. One errs by half the variance of where the emission is, times how the
-  /// light bends along the ray: at most in proportion to the square of the angle that the normal turns by, and that is
-  /// no more than the change of the gradient over its least length (where that is weak, light does without it). Where
-  /// the colour changes along with the light, it errs by their covariance as well.
-  template <class Stretch>
-  HWY_INLINE Float count_lit_parts(const GradientCourse<Stretch>& gradients, const Cut& begin, const Cut& end,
-                                   const Spread& emission, Mask bright, const Accumulated& part,
-                                   const Accumulated& sum) const {
-    constexpr float kMostParts = 64.0f;
-    const Float zero = constant(0.0f), one = constant(1.0f);
-    const Triple front = gradients.at(begin.u), back = gradients.at(end.u);
-    const Triple change{hn::Sub(back.x, front.x), hn::Sub(back.y, front.y), hn::Sub(back.z, front.z)};
+  /// How many parts a stretch is to be lit in that has this light at its two places. Light errs in proportion to the
+  /// fourth power of the angle between the two normals, where emission is uneven to the third, and where the colour
+  /// changes too to the angle itself. That is no more than the change of the gradient over its least length (where it
+  /// is weak, light does without it).
+  HWY_INLINE Float count_lit_parts(const LitPair& lights, const Spread& emission, Float absorbed) const {
+    constexpr float kMostParts = 16.0f;
+    const Float one = constant(1.0f), tiny = constant(1e-30f);
+    const Triple &near = lights.near_gradient, &far = lights.far_gradient;
+    const Triple change{hn::Sub(far.x, near.x), hn::Sub(far.y, near.y), hn::Sub(far.z, near.z)};
     const Float square = dot(change, change);
-    const Float nearest = hn::Div(hn::Neg(dot(front, change)), hn::Max(square, constant(1e-30f)));
-    const Triple least = mix(hn::Min(hn::Max(nearest, zero), one), front, back);
+    const Float nearest = hn::Div(hn::Neg(dot(near, change)), hn::Max(square, tiny));
+    // The two places are not the ends: the gradient may be weaker a little beyond them.
+    const Triple least = mix(hn::Min(hn::Max(nearest, constant(-0.5f)), constant(1.5f)), near, far);
     const Float weakest = hn::Max(hn::Add(dot(least, least), constant(effects_.shading->half_strength)),
-                                  hn::Max(hn::Mul(constant(1e-3f), square), constant(1e-30f)));
-    const Float absorbed = hn::Sub(sum.transmittance, part.transmittance), span = hn::Sub(end.u, begin.u);
-    const Float variance = hn::Div(emission.variance, hn::Max(hn::Mul(span, span), constant(1e-12f)));
-    const Float turned = hn::Mul(variance, hn::Div(square, weakest));
-    const Float error = hn::Mul(
-        absorbed, multiply_add(constant(effects_.bend_weight), turned,
-                               hn::Mul(hn::Mul(constant(effects_.tint_weight), emission.tint), hn::Sqrt(turned))));
-    const Float count = hn::Min(hn::Max(hn::Ceil(hn::Sqrt(error)), one), constant(kMostParts));
-    return hn::IfThenElse(bright, count, one);
+                                  hn::Max(hn::Mul(constant(1e-3f), square), tiny));
+    const Float turned = hn::Div(square, weakest), angle = hn::Sqrt(turned);
+    const LightChange& change_of = effects_.light_change;
+    const Float tinted = hn::Mul(constant(change_of.first), hn::Mul(emission.tint, angle));
+    const Float skewed = hn::Mul(constant(change_of.third), hn::Mul(emission.unevenness, hn::Mul(angle, turned)));
+    const Float bent = hn::Mul(hn::Mul(absorbed, constant(change_of.fourth)), hn::Mul(turned, turned));
+    const Float quadratic = hn::Mul(absorbed, hn::Max(tinted, skewed));
+    const Float wanted = hn::Sqrt(hn::Max(quadratic, hn::Sqrt(bent)));
+    return hn::Min(hn::Max(hn::Ceil(wanted), one), constant(kMostParts));
   }
 
   /// Gathers and lights a stretch in `count` equal parts.
@@ -440,11 +479,14 @@ class EffectIntegrator {
       Cut next = cut_at(walk.stretch, multiply_add(number, share, begin.u));
       next = {hn::IfThenElse(last, end.u, next.u), hn::IfThenElse(last, end.scalar, next.scalar)};
       const Gathered gathered = gather(walk, at, next);
-      if (hn::AllFalse(kFloat, gathered.bright))
+      if (hn::AllFalse(kFloat, gathered.bright)) {
         add_usual(gathered.part, walk.sum);
-      else
-        add_lit(walk, gradients, inside(at, next, gathered.emission.spread(gathered.absorbed).center), gathered.bright,
-                gathered.part);
+      } else {
+        const Spread emission = gathered.emission.spread(gathered.absorbed);
+        const LitPlaces places = find_lit_places(at, next, emission, gathered.bright, gathered.absorbed);
+        add_lit(look_up_light(walk, gradients, places, gathered.bright), places.far_weight, gathered.bright,
+                gathered.part, walk.sum);
+      }
       if (hn::AllTrue(kFloat, last)) return;
       at = next;
     }
@@ -459,24 +501,18 @@ class EffectIntegrator {
     sum.transmittance = part.transmittance;
   }
 
-  /// Adds what has been gathered on a part of a stretch in the light at `u`, if it is `bright`.
-  template <class Stretch>
-  HWY_NOINLINE void add_lit(const Walk<Stretch>& walk, const GradientCourse<Stretch>& gradients, Float u, Mask bright,
-                            const Accumulated& part) const {
-    Accumulated& sum = walk.sum;
-    const RayView& ray = walk.ray;
+  /// Adds what has been gathered on a part of a stretch in the mean of the light at its two places.
+  HWY_INLINE void add_lit(const LitPair& lights, Float far_weight, Mask bright, const Accumulated& part,
+                          Accumulated& sum) const {
     const Float absorbed = hn::Sub(sum.transmittance, part.transmittance), usual = constant(effects_.usual_light);
-    const Triple gradient = gradients.at(u);
-    const Illumination light =
-        is_lit_from_eye_ ? illuminate_from_eye(*effects_.shading, gradient, ray.direction())
-                         : illuminate(*effects_.shading,
-                                      {ray.position(depth_at(walk.stretch, u)), gradient, ray.to_eye(), bright, false});
-    const auto lit = [&](Float color, Float diffuse, Float specular) {
-      return hn::IfThenElse(bright, multiply_add(absorbed, specular, hn::Mul(color, diffuse)), hn::Mul(color, usual));
+    const Triple diffuse = mix(far_weight, lights.near.diffuse, lights.far.diffuse);
+    const Triple specular = mix(far_weight, lights.near.specular, lights.far.specular);
+    const auto lit = [&](Float color, Float by, Float more) {
+      return hn::IfThenElse(bright, multiply_add(absorbed, more, hn::Mul(color, by)), hn::Mul(color, usual));
     };
-    sum.red = hn::Add(sum.red, lit(part.red, light.diffuse.x, light.specular.x));
-    sum.green = hn::Add(sum.green, lit(part.green, light.diffuse.y, light.specular.y));
-    sum.blue = hn::Add(sum.blue, lit(part.blue, light.diffuse.z, light.specular.z));
+    sum.red = hn::Add(sum.red, lit(part.red, diffuse.x, specular.x));
+    sum.green = hn::Add(sum.green, lit(part.green, diffuse.y, specular.y));
+    sum.blue = hn::Add(sum.blue, lit(part.blue, diffuse.z, specular.z));
     sum.transmittance = part.transmittance;
   }
 

@@ -73,6 +73,12 @@ struct DepthRecord {
   float z_first = 0.0f, slices_per_z = 0.0f;
 };
 
+/// Errors of light looked up in two places, in parts of what the light of a stretch may err by: by the angle between
+/// the two normals where colours change, by its third power where emission is uneven, by its fourth power everywhere.
+struct LightChange {
+  float first = 0.0f, third = 0.0f, fourth = 0.0f;
+};
+
 struct Effects {
   const Shading* shading = nullptr;        ///< null: unlit
   std::span<const SurfaceSheet> surfaces;  ///< by ascending value
@@ -82,9 +88,8 @@ struct Effects {
   float weight_by_gradient = 0.0f;  ///< by that times gradient magnitude (stored scalars a local length), at most 1
   float faint = 0.0f;               ///< opacity that is not worth a normal
   float usual_light = 1.0f;         ///< what it is lit with instead
-  /// Errors of one light for a stretch, in parts of what is allowed: by the square of the angle that normals turn by,
-  /// and by that angle where colours change.
-  float bend_weight = 0.0f, tint_weight = 0.0f;
+  float lit_once = 0.0f;            ///< what a stretch may absorb and be lit in one place
+  LightChange light_change;
   float longest_lit = 0.0f;  ///< local length that is lit as its middle is, for shadows; 0: any
   float* depth = nullptr;    ///< [height][width] of the picture: see Image::depth; in local lengths from `z_eye`
   const DepthRecord* record = nullptr;

@@ -83,15 +83,16 @@ HWY_NOINLINE inline void record_depths(const DepthRecord& record, const std::int
   }
 }
 
-/// Where in a segment or a stretch something lies, from 0 to 1, and by how much its colour changes.
+/// Where in a segment or a stretch something lies, from 0 to 1, by how much its colour changes, and how far it is from
+/// linear along it (0: linear; 1: in peaks).
 struct Spread {
-  Float center, variance, tint;
+  Float center, variance, tint, unevenness;
 };
 
 /// Where the extinction of a segment lies.
 HWY_INLINE Spread find_extinction(const CentroidView& table, const Segments& segment) {
   const Float half = constant(0.5f), one = constant(1.0f), zero = constant(0.0f), even = constant(1.0f / 12.0f);
-  if (table.last_node == 0) return {half, even, zero};
+  if (table.last_node == 0) return {half, even, zero, zero};
   const float last = static_cast<float>(table.last_node);
   const auto node_of = [&](Float scalar) {
     const Float at = hn::Mul(hn::Sub(scalar, constant(table.first)), constant(table.nodes_per_scalar));
@@ -115,27 +116,31 @@ HWY_INLINE Spread find_extinction(const CentroidView& table, const Segments& seg
   const Float widest = hn::Mul(inside, hn::Sub(one, inside));  // of all that have this centre
   // Of a narrow range float cannot tell the variance; the extinction is about even there.
   const Mask narrow = hn::Lt(hn::Abs(nodes), constant(last * (1.0f / 256.0f)));
-  const Float spread = hn::IfThenElse(narrow, even, hn::Min(hn::Max(variance, zero), widest));
-  return {hn::IfThenElse(empty, half, inside), hn::IfThenElse(empty, even, spread),
-          hn::Min(hn::AbsDiff(after.w, before.w), one)};
+  const Float spread = hn::IfThenElse(hn::Or(empty, narrow), even, hn::Min(hn::Max(variance, zero), widest));
+  const Float middle = hn::IfThenElse(empty, half, inside), off = hn::Abs(hn::Sub(middle, half));
+  // What is linear has its centre within a sixth of the middle, and 1/12 - off^2 for a variance.
+  const Float odd = hn::Max(hn::Sub(hn::Mul(constant(6.0f), off), one), zero);
+  const Float bulge = hn::Abs(hn::Sub(multiply_add(off, off, spread), even));
+  const Float unevenness = hn::Min(multiply_add(constant(12.0f), bulge, odd), one);
+  return {middle, spread, hn::Min(hn::AbsDiff(after.w, before.w), one), hn::IfThenZeroElse(narrow, unevenness)};
 }
 
-/// What a homogeneous medium of this opacity is seen of lies nearer than its middle by this part of its length.
-HWY_INLINE Float find_attenuation_shift(Float opacity) {
-  // The mean of u exp(-t u) / (1 - exp(-t)) * t over [0, 1] is 1 / t - 1 / (exp(t) - 1).
-  const Float one = constant(1.0f), through = hn::Max(hn::Sub(one, opacity), constant(1e-6f));
-  const Float depth = hn::Mul(log2_positive(through), constant(-0.69314718f));
-  const Float mean = hn::Sub(hn::Div(one, depth), hn::Div(through, hn::Sub(one, through)));
-  const Mask is_thin = hn::Lt(opacity, constant(0.05f));  // where rounding would show
-  return hn::IfThenElse(is_thin, hn::Mul(opacity, constant(1.0f / 12.0f)), hn::Sub(constant(0.5f), mean));
-}
-
-/// Where what is seen of a segment of this opacity comes from: its front part hides its back part, all the more the
-/// wider its extinction is spread (in a homogeneous segment, by a variance of 1/12).
+/// What is seen of a segment of this opacity: its front part hides its back part, all the more the wider its extinction
+/// is spread. In a homogeneous segment u is seen with a weight of exp(-t u), t its optical depth.
 HWY_INLINE Spread find_emission(const CentroidView& table, const Segments& segment, Float opacity) {
-  const Spread extinction = find_extinction(table, segment);
-  const Float shift = hn::Mul(hn::Mul(constant(12.0f), extinction.variance), find_attenuation_shift(opacity));
-  return {hn::Max(hn::Sub(extinction.center, shift), constant(0.0f)), extinction.variance, extinction.tint};
+  Spread seen = find_extinction(table, segment);
+  const Float one = constant(1.0f), zero = constant(0.0f), twelve = constant(12.0f);
+  const Float through = hn::Max(hn::Sub(one, opacity), constant(1e-6f)), odds = hn::Div(through, hn::Sub(one, through));
+  const Float inverse = hn::Div(one, hn::Mul(log2_positive(through), constant(-0.69314718f)));
+  const Float mean = hn::Sub(inverse, odds);
+  const Float variance = hn::Sub(hn::Mul(inverse, inverse), multiply_add(odds, odds, odds));
+  const Mask is_thin = hn::Lt(opacity, constant(0.1f));  // where rounding would show
+  const Float shift = hn::IfThenElse(is_thin, hn::Mul(opacity, constant(1.0f / 12.0f)), hn::Sub(constant(0.5f), mean));
+  seen.center = hn::Max(hn::Sub(seen.center, hn::Mul(hn::Mul(twelve, seen.variance), shift)), zero);
+  seen.variance = hn::Mul(seen.variance, hn::IfThenElse(is_thin, one, hn::Mul(twelve, hn::Max(variance, zero))));
+  // How an uneven one hides itself its moments do not tell: that counts like a change of colour.
+  seen.tint = hn::Min(multiply_add(seen.unevenness, opacity, seen.tint), one);
+  return seen;
 }
 
 /// The gradient along a stretch, in the camera frame.
