@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 
 namespace tetravox::cpu {
@@ -19,6 +20,9 @@ constexpr float kUsualLight = 0.75f;
 
 /// Of the shadows' lattice: by how many steps surfaces are moved off themselves, and how many are lit as their middle.
 constexpr float kBiasInSteps = 1.5f, kLitInSteps = 1.5f;
+
+/// Of the tolerance: by how much the light of one stretch may err. Errors of many stretches hardly add up.
+constexpr double kTurningOfTolerance = 1.0 / 8.0;
 
 LightSource make_light(const Light& light, const IllustratedFrame& frame) {
   LightSource source;
@@ -64,6 +68,21 @@ void fill_shading(const Lighting& lighting, const IllustratedFrame& frame, Illus
   const double magnitude = lighting.gradient_threshold * range / frame.diagonal;  // value a world length
   const double stored = magnitude * frame.world_per_local / frame.scalar_map.scale;
   shading.half_strength = static_cast<float>(stored * stored);
+}
+
+/// How light follows the angle that a normal turns by: bounds on its first and second derivative.
+struct LightChange {
+  double slope = 0.0, bend = 0.0;
+};
+LightChange find_light_change(const Lighting& lighting) {
+  double brightness = 0.0;
+  for (const Light& light : lighting.lights)
+    brightness += light.intensity * std::max({light.color[0], light.color[1], light.color[2]});
+  // cos^N is nowhere steeper than sqrt(N / e), nor bent more than at its top.
+  const Material& material = lighting.material;
+  const double steepest = std::max(1.0, std::sqrt(material.shininess / std::numbers::e));
+  return {brightness * (material.diffuse + material.specular * steepest),
+          brightness * (material.diffuse + material.specular * material.shininess)};
 }
 
 /// Everything that what `lights` see depends on, as text.
@@ -186,7 +205,13 @@ void illustrate(const RenderSettings& settings, const IllustratedFrame& frame, I
     effects.weight_by_change = static_cast<float>(weight);
   if (settings.opacity_weight == OpacityWeight::kGradient)
     effects.weight_by_gradient = static_cast<float>(weight / frame.world_per_local);
-  if (effects.shading) effects.usual_light = kUsualLight;
+  if (effects.shading) {
+    effects.usual_light = kUsualLight;
+    const LightChange change = find_light_change(settings.lighting);
+    const double allowed = kTurningOfTolerance * settings.tolerance;
+    effects.bend_weight = static_cast<float>(0.5 * change.bend / allowed);
+    effects.tint_weight = static_cast<float>(change.slope / allowed);
+  }
   effects.faint = static_cast<float>(settings.tolerance * kFaintOfTolerance);
 }
 

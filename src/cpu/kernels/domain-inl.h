@@ -97,11 +97,11 @@ class DomainIntegrator : public WithoutFront {
         threshold_(kErrorOfSlope * tables.tolerance) {}
 
   /// Adds the part of a stretch between two cuts in linear pieces. `find_length(a, b)`: world length of the piece
-  /// between two cuts; `note(a, b, before)`: told of each piece, with the transmittance before it. `moment`: where
-  /// there is one, what is absorbed times where (as u of the stretch) is added to it.
-  template <class Stretch, class FindLength, class Note>
+  /// between two cuts; `note(a, b, before)`: told of each piece, with the transmittance before it. `emission`: where
+  /// there is one, what is absorbed, and where (as u of the stretch), is added to its sums.
+  template <class Stretch, class Emission, class FindLength, class Note>
   HWY_NOINLINE void integrate_stretch(const Stretch& stretch, const Cut& begin, const Cut& end, Accumulated& sum,
-                                      Float* moment, const FindLength& find_length, const Note& note) const {
+                                      Emission* emission, const FindLength& find_length, const Note& note) const {
     Place at = place_at(stretch, begin), last_place = place_at(stretch, end);
     const Range range = find_range(stretch, at, last_place);
     const Mask seen = hn::And(hn::Gt(stretch.length, constant(0.0f)), function_.is_occupied(range.low, range.high));
@@ -125,7 +125,7 @@ class DomainIntegrator : public WithoutFront {
       }
       const Float before = sum.transmittance;
       const Piece piece{cut, next, at, next_place};
-      integrate_piece(piece, hn::IfThenElseZero(seen, find_length(cut, next)), sum, moment);
+      integrate_piece(piece, hn::IfThenElseZero(seen, find_length(cut, next)), sum, emission);
       note(cut, next, before);
       if (hn::AllTrue(kFloat, last)) return;
       cut = next;
@@ -243,7 +243,8 @@ class DomainIntegrator : public WithoutFront {
     return hn::AbsDiff(chord, magnitude_of(middle));
   }
 
-  HWY_INLINE void integrate_piece(const Piece& piece, Float length, Accumulated& sum, Float* moment) const {
+  template <class Emission>
+  HWY_INLINE void integrate_piece(const Piece& piece, Float length, Accumulated& sum, Emission* emission) const {
     DomainPath<kCount> path;
     Mask active = hn::Gt(length, constant(0.0f));
     for (int axis = 0; axis < kCount; ++axis) {
@@ -256,9 +257,15 @@ class DomainIntegrator : public WithoutFront {
     if (hn::AllFalse(kFloat, active)) return;
     const Float share = hn::Sub(piece.b.u, piece.a.u);
     follow(path, length, active, sum, [&](Float from, Float to, const DomainPart& part, Float absorbed) {
-      if (!moment) return;
+      if (!emission) return;
+      const Float span = hn::Mul(hn::Sub(to, from), share);
       const Float place = multiply_add(multiply_add(part.centroid(), hn::Sub(to, from), from), share, piece.a.u);
-      *moment = multiply_add(absorbed, place, *moment);
+      const Float moment = hn::Mul(absorbed, place);
+      const Float variance = hn::Mul(hn::Mul(span, span), constant(1.0f / 12.0f));
+      emission->moment = hn::Add(emission->moment, moment);
+      emission->second = hn::Add(emission->second, multiply_add(moment, place, hn::Mul(absorbed, variance)));
+      const Mask absorbs = hn::Gt(absorbed, constant(0.0f));
+      emission->tint = hn::Add(emission->tint, hn::IfThenElseZero(absorbs, part.color_change()));
     });
   }
 

@@ -20,7 +20,7 @@ namespace HWY_NAMESPACE {
 
 /// What a vector of rays passes in trilinear cells (see stretches-inl.h): a cubic of the scalar.
 struct CellStretch {
-  static constexpr bool kIsLinear = false;
+  static constexpr bool kIsLinear = false, kHasLinearGradient = false;
 
   Float scalar_front, scalar_back, z_front, z_back, length;
   const MarchJob& job;
@@ -106,7 +106,7 @@ struct CellStretch {
 
 /// What a vector of rays passes in one of equal steps through a brick, on which the scalar counts as linear.
 struct StepStretch {
-  static constexpr bool kIsLinear = true;
+  static constexpr bool kIsLinear = true, kHasLinearGradient = false;
 
   Float scalar_front, scalar_back, z_front, z_back, length;
   const LatticeSampler& sampler;
@@ -137,7 +137,7 @@ struct StepStretch {
 
 /// What a vector of rays passes in constant cells.
 struct ConstantStretch {
-  static constexpr bool kIsLinear = true;
+  static constexpr bool kIsLinear = true, kHasLinearGradient = true;
 
   Float scalar_front, scalar_back, z_front, z_back, length;
   const MarchBrick& brick;
@@ -145,6 +145,7 @@ struct ConstantStretch {
 
   HWY_INLINE Float scalar(Float) const { return scalar_front; }
   HWY_INLINE Float other(int axis, Float) const { return hn::GatherIndex(kFloat, brick.others[axis], cell); }
+  HWY_INLINE void end_gradients(Triple ends[2]) const { ends[0] = ends[1] = gradient(constant(0.0f)); }
   HWY_INLINE Triple gradient(Float) const {
     if (!brick.gradients) return {constant(0.0f), constant(0.0f), constant(0.0f)};
     const Record r = load_table_records(brick.gradients, hn::BitCast(kUint, cell));

@@ -16,6 +16,7 @@
 #include "src/cpu/kernels/vector_math-inl.h"
 
 #include <limits>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
@@ -59,7 +60,11 @@ class EffectIntegrator {
         return;
       }
       const auto stretch = make_stretch();
-      add_lit(stretch, make_ray(), find_centroid(effects_.centroid, segment), bright, part, sum);
+      const RayView ray = make_ray();
+      Float unused = constant(0.0f);
+      const Walk<std::remove_const_t<decltype(stretch)>> walk{stretch, ray, front, sum, unused};
+      light(walk, {constant(0.0f), segment.scalar_front}, {constant(1.0f), segment.scalar_back},
+            find_emission(effects_.centroid, segment, opacity_of(sum, part)), bright, part);
     }
   }
 
@@ -223,11 +228,17 @@ class EffectIntegrator {
     }
   }
 
-  /// Where pieces absorb.
+  /// Where pieces absorb: sums of what they absorb times where that is, and times its square; changes of colour.
   struct Emission {
-    Float moment;  ///< sum over the pieces: what it absorbs times where that is
-    Float place;   ///< where that is, of rays with a single piece
-    Mask is_single;
+    Float moment, second, tint;
+
+    /// The whole of them, of which `absorbed` is the sum.
+    HWY_INLINE Spread spread(Float absorbed) const {
+      const Float share = hn::Div(constant(1.0f), hn::Max(absorbed, constant(1e-30f)));
+      const Float mean = hn::Mul(moment, share);
+      const Float variance = hn::Sub(hn::Mul(second, share), hn::Mul(mean, mean));
+      return {mean, hn::Max(variance, constant(0.0f)), hn::Min(tint, constant(1.0f))};
+    }
   };
 
   /// Adds linear pieces to `sum`, and says where they absorb, if that is asked for. What one ray is given does not
@@ -236,9 +247,8 @@ class EffectIntegrator {
   HWY_NOINLINE void integrate_pieces(const Walk<Stretch>& walk, const Cut& begin, const Cut& end, Accumulated& sum,
                                      Emission* emission) const {
     if constexpr (kIsOfDomain) {
-      if (emission) emission->is_single = hn::FirstN(kFloat, 0);  // the moment says it all
       base_.integrate_stretch(
-          walk.stretch, begin, end, sum, emission ? &emission->moment : nullptr,
+          walk.stretch, begin, end, sum, emission,
           [&](const Cut& a, const Cut& b) { return segment_between(walk.stretch, a, b).length; },
           [&](const Cut& a, const Cut& b, Float before) { note_piece(walk, a, b, before, sum.transmittance); });
     } else if constexpr (Stretch::kIsLinear) {
@@ -246,7 +256,6 @@ class EffectIntegrator {
     } else {
       const Float pieces = walk.stretch.count_pieces(begin, end, sum.transmittance);
       const Float share = hn::Div(hn::Sub(end.u, begin.u), pieces);
-      if (emission) emission->is_single = hn::Le(pieces, constant(1.0f));
       Cut at = begin;
       for (Float number = constant(1.0f);; number = hn::Add(number, constant(1.0f))) {
         const Mask last = hn::Ge(number, pieces);
@@ -272,13 +281,20 @@ class EffectIntegrator {
     if (emission) {
       const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
       const Float absorbed = hn::Sub(before, sum.transmittance);
-      const Mask wants_place = hn::And(emission->is_single, hn::Gt(absorbed, constant(effects_.faint)));
-      Float place = constant(0.5f);
-      if (!hn::AllFalse(kFloat, wants_place))
-        place = hn::IfThenElse(wants_place, find_centroid(effects_.centroid, segment), place);
-      place = multiply_add(place, part, a.u);
-      emission->moment = multiply_add(absorbed, place, emission->moment);
-      emission->place = hn::IfThenElse(hn::Gt(part, constant(0.0f)), place, emission->place);
+      const Mask is_bright = hn::Gt(absorbed, constant(effects_.faint));
+      Spread inside{constant(0.5f), constant(1.0f / 12.0f), constant(0.0f)};
+      if (!hn::AllFalse(kFloat, is_bright)) {
+        const Float opacity = hn::Div(absorbed, hn::Max(before, constant(1e-30f)));
+        const Spread found = find_emission(effects_.centroid, segment, opacity);
+        inside = {hn::IfThenElse(is_bright, found.center, inside.center),
+                  hn::IfThenElse(is_bright, found.variance, inside.variance),
+                  hn::IfThenElse(is_bright, found.tint, inside.tint)};
+      }
+      const Float place = multiply_add(inside.center, part, a.u), moment = hn::Mul(absorbed, place);
+      const Float variance = hn::Mul(inside.variance, hn::Mul(part, part));
+      emission->moment = hn::Add(emission->moment, moment);
+      emission->second = hn::Add(emission->second, multiply_add(moment, place, hn::Mul(absorbed, variance)));
+      emission->tint = hn::Add(emission->tint, inside.tint);
     }
     note_piece(walk, a, b, before, sum.transmittance);
   }
@@ -333,23 +349,101 @@ class EffectIntegrator {
     return illuminate(*effects_.shading, place);
   }
 
+  /// What the volume between two cuts emits and absorbs, and where.
+  struct Gathered {
+    Accumulated part;  ///< its transmittance is that behind it
+    Emission emission;
+    Float absorbed;
+    Mask bright;  ///< worth a normal
+  };
+  template <class Stretch>
+  HWY_INLINE Gathered gather(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
+    const Float zero = constant(0.0f);
+    Gathered gathered{{zero, zero, zero, walk.sum.transmittance}, {zero, zero, zero}, zero, hn::FirstN(kFloat, 0)};
+    integrate_pieces(walk, begin, end, gathered.part, &gathered.emission);
+    gathered.absorbed = hn::Sub(walk.sum.transmittance, gathered.part.transmittance);
+    gathered.bright = hn::Gt(gathered.absorbed, constant(effects_.faint));
+    return gathered;
+  }
+
   /// Adds the volume between two cuts, in the light that falls where its emission is.
   template <class Stretch>
   HWY_NOINLINE void integrate_lit(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
-    Accumulated& sum = walk.sum;
-    const Float zero = constant(0.0f);
-    Accumulated part{zero, zero, zero, sum.transmittance};
-    Emission emission{zero, constant(0.5f), hn::FirstN(kFloat, kLanes)};
-    integrate_pieces(walk, begin, end, part, &emission);
-    const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
-    const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
-    if (hn::AllFalse(kFloat, bright)) {
-      add_usual(part, sum);
-      return;
+    const Gathered gathered = gather(walk, begin, end);
+    if (hn::AllFalse(kFloat, gathered.bright))
+      add_usual(gathered.part, walk.sum);
+    else
+      light(walk, begin, end, gathered.emission.spread(gathered.absorbed), gathered.bright, gathered.part);
+  }
+
+  /// Adds `part`, what has been gathered between two cuts, in one light; or, where normals turn too much for that,
+  /// gathers it again in shorter parts with a light each.
+  template <class Stretch>
+  HWY_INLINE void light(const Walk<Stretch>& walk, const Cut& begin, const Cut& end, const Spread& emission,
+                        Mask bright, const Accumulated& part) const {
+    const GradientCourse<Stretch> gradients(walk.stretch, effects_.camera_from_gradient);
+    const Float count = count_lit_parts(gradients, begin, end, emission, bright, part, walk.sum);
+    if (HWY_LIKELY(hn::AllTrue(kFloat, hn::Le(count, constant(1.0f)))))
+      add_lit(walk, gradients, inside(begin, end, emission.center), bright, part);
+    else
+      integrate_turning(walk, gradients, begin, end, count);
+  }
+
+  static HWY_INLINE Float inside(const Cut& begin, const Cut& end, Float u) {
+    return hn::Min(hn::Max(u, begin.u), end.u);
+  }
+  static HWY_INLINE Float opacity_of(const Accumulated& before, const Accumulated& after) {
+    const Float absorbed = hn::Sub(before.transmittance, after.transmittance);
+    return hn::Div(absorbed, hn::Max(before.transmittance, constant(1e-30f)));
+  }
+
+  /// How many lights it takes between two cuts. One errs by half the variance of where the emission is, times how the
+  /// light bends along the ray: at most in proportion to the square of the angle that the normal turns by, and that is
+  /// no more than the change of the gradient over its least length (where that is weak, light does without it). Where
+  /// the colour changes along with the light, it errs by their covariance as well.
+  template <class Stretch>
+  HWY_INLINE Float count_lit_parts(const GradientCourse<Stretch>& gradients, const Cut& begin, const Cut& end,
+                                   const Spread& emission, Mask bright, const Accumulated& part,
+                                   const Accumulated& sum) const {
+    constexpr float kMostParts = 64.0f;
+    const Float zero = constant(0.0f), one = constant(1.0f);
+    const Triple front = gradients.at(begin.u), back = gradients.at(end.u);
+    const Triple change{hn::Sub(back.x, front.x), hn::Sub(back.y, front.y), hn::Sub(back.z, front.z)};
+    const Float square = dot(change, change);
+    const Float nearest = hn::Div(hn::Neg(dot(front, change)), hn::Max(square, constant(1e-30f)));
+    const Triple least = mix(hn::Min(hn::Max(nearest, zero), one), front, back);
+    const Float weakest = hn::Max(hn::Add(dot(least, least), constant(effects_.shading->half_strength)),
+                                  hn::Max(hn::Mul(constant(1e-3f), square), constant(1e-30f)));
+    const Float absorbed = hn::Sub(sum.transmittance, part.transmittance), span = hn::Sub(end.u, begin.u);
+    const Float variance = hn::Div(emission.variance, hn::Max(hn::Mul(span, span), constant(1e-12f)));
+    const Float turned = hn::Mul(variance, hn::Div(square, weakest));
+    const Float error = hn::Mul(
+        absorbed, multiply_add(constant(effects_.bend_weight), turned,
+                               hn::Mul(hn::Mul(constant(effects_.tint_weight), emission.tint), hn::Sqrt(turned))));
+    const Float count = hn::Min(hn::Max(hn::Ceil(hn::Sqrt(error)), one), constant(kMostParts));
+    return hn::IfThenElse(bright, count, one);
+  }
+
+  /// Gathers and lights a stretch in `count` equal parts.
+  template <class Stretch>
+  HWY_NOINLINE void integrate_turning(const Walk<Stretch>& walk, const GradientCourse<Stretch>& gradients,
+                                      const Cut& begin, const Cut& end, Float count) const {
+    const Float one = constant(1.0f), share = hn::Div(hn::Sub(end.u, begin.u), count);
+    walk.front = base_.front_at(begin.scalar);
+    Cut at = begin;
+    for (Float number = one;; number = hn::Add(number, one)) {
+      const Mask last = hn::Ge(number, count);
+      Cut next = cut_at(walk.stretch, multiply_add(number, share, begin.u));
+      next = {hn::IfThenElse(last, end.u, next.u), hn::IfThenElse(last, end.scalar, next.scalar)};
+      const Gathered gathered = gather(walk, at, next);
+      if (hn::AllFalse(kFloat, gathered.bright))
+        add_usual(gathered.part, walk.sum);
+      else
+        add_lit(walk, gradients, inside(at, next, gathered.emission.spread(gathered.absorbed).center), gathered.bright,
+                gathered.part);
+      if (hn::AllTrue(kFloat, last)) return;
+      at = next;
     }
-    const Float mean = hn::Div(emission.moment, hn::Max(absorbed, constant(1e-30f)));
-    const Float u = hn::IfThenElse(emission.is_single, emission.place, mean);
-    add_lit(walk.stretch, walk.ray, hn::Min(hn::Max(u, begin.u), end.u), bright, part, sum);
   }
 
   /// Adds what is too faint for a normal.
@@ -361,16 +455,18 @@ class EffectIntegrator {
     sum.transmittance = part.transmittance;
   }
 
-  /// Adds a part of a stretch in the light at `u`, where that is `bright`.
+  /// Adds what has been gathered on a part of a stretch in the light at `u`, if it is `bright`.
   template <class Stretch>
-  HWY_NOINLINE void add_lit(const Stretch& stretch, const RayView& ray, Float u, Mask bright, const Accumulated& part,
-                            Accumulated& sum) const {
+  HWY_NOINLINE void add_lit(const Walk<Stretch>& walk, const GradientCourse<Stretch>& gradients, Float u, Mask bright,
+                            const Accumulated& part) const {
+    Accumulated& sum = walk.sum;
+    const RayView& ray = walk.ray;
     const Float absorbed = hn::Sub(sum.transmittance, part.transmittance), usual = constant(effects_.usual_light);
-    const Triple gradient = gradient_at(effects_, stretch, u);
+    const Triple gradient = gradients.at(u);
     const Illumination light =
         is_lit_from_eye_ ? illuminate_from_eye(*effects_.shading, gradient, ray.direction())
                          : illuminate(*effects_.shading,
-                                      {ray.position(depth_at(stretch, u)), gradient, ray.to_eye(), bright, false});
+                                      {ray.position(depth_at(walk.stretch, u)), gradient, ray.to_eye(), bright, false});
     const auto lit = [&](Float color, Float diffuse, Float specular) {
       return hn::IfThenElse(bright, multiply_add(absorbed, specular, hn::Mul(color, diffuse)), hn::Mul(color, usual));
     };

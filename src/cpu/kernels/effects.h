@@ -58,12 +58,12 @@ struct SurfaceSheet {
   bool is_two_sided = true;
 };
 
-/// First moments of the extinction over the scalar: where in a segment its emission lies (see
-/// optics/centroid_table.h).
+/// Moments of the extinction over the scalar: where in a segment its emission lies (see optics/centroid_table.h).
 struct CentroidView {
   float first = 0.0f, nodes_per_scalar = 0.0f;
   std::int32_t last_node = 0;
-  const std::int32_t* sums = nullptr;  ///< [last_node + 1][4]: extinction, extinction * position, both up to the node
+  const std::int32_t* sums = nullptr;  ///< [last_node + 1][4]: extinction, times place, times its square; change
+  ///< of colour; all up to the node
 };
 
 /// Optical depths of rays at equal steps of depth, written down as they pass.
@@ -82,8 +82,11 @@ struct Effects {
   float weight_by_gradient = 0.0f;  ///< by that times gradient magnitude (stored scalars a local length), at most 1
   float faint = 0.0f;               ///< opacity that is not worth a normal
   float usual_light = 1.0f;         ///< what it is lit with instead
-  float longest_lit = 0.0f;         ///< local length that is lit as its middle is, for shadows; 0: any
-  float* depth = nullptr;           ///< [height][width] of the picture: see Image::depth; in local lengths from `z_eye`
+  /// Errors of one light for a stretch, in parts of what is allowed: by the square of the angle that normals turn by,
+  /// and by that angle where colours change.
+  float bend_weight = 0.0f, tint_weight = 0.0f;
+  float longest_lit = 0.0f;  ///< local length that is lit as its middle is, for shadows; 0: any
+  float* depth = nullptr;    ///< [height][width] of the picture: see Image::depth; in local lengths from `z_eye`
   const DepthRecord* record = nullptr;
 };
 

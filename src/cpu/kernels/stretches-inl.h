@@ -4,7 +4,7 @@
 // A stretch offers
 // - Float scalar_front, scalar_back, z_front, z_back, length: length in world units, 0 where a ray takes no part;
 // - Float scalar(Float u): strictly inside;
-// - Triple gradient(Float u);
+// - Triple gradient(Float u); static constexpr bool kHasLinearGradient, and where it is: void end_gradients(Triple[2]);
 // - static constexpr bool kIsLinear, and where it is not: void find_extrema(Float extrema[2]), Float bend(),
 // - Float slope(Float u), Float count_pieces(from, to, transmittance): linear pieces that the tolerance asks for;
 // - for functions of several variables: Float other(int axis, Float u), the scalar of another array, and where it is
@@ -115,13 +115,19 @@ HWY_NOINLINE inline void record_depths(const DepthRecord& record, const std::int
   }
 }
 
-/// Where in a segment, from 0 to 1, its extinction has its centre.
-HWY_INLINE Float find_centroid(const CentroidView& table, const Segments& segment) {
-  const Float half = constant(0.5f), one = constant(1.0f), zero = constant(0.0f);
-  if (table.last_node == 0) return half;
+/// Where in a segment or a stretch something lies, from 0 to 1, and by how much its colour changes.
+struct Spread {
+  Float center, variance, tint;
+};
+
+/// Where the extinction of a segment lies.
+HWY_INLINE Spread find_extinction(const CentroidView& table, const Segments& segment) {
+  const Float half = constant(0.5f), one = constant(1.0f), zero = constant(0.0f), even = constant(1.0f / 12.0f);
+  if (table.last_node == 0) return {half, even, zero};
+  const float last = static_cast<float>(table.last_node);
   const auto node_of = [&](Float scalar) {
     const Float at = hn::Mul(hn::Sub(scalar, constant(table.first)), constant(table.nodes_per_scalar));
-    return hn::NearestInt(hn::Min(hn::Max(at, zero), constant(static_cast<float>(table.last_node))));
+    return hn::NearestInt(hn::Min(hn::Max(at, zero), constant(last)));
   };
   const Int front = node_of(segment.scalar_front), back = node_of(segment.scalar_back);
   const Record before = load_table_records(table.sums, hn::BitCast(kUint, front));
@@ -131,11 +137,63 @@ HWY_INLINE Float find_centroid(const CentroidView& table, const Segments& segmen
   };
   const Float total = difference(before.x, after.x), nodes = hn::ConvertTo(kFloat, hn::Sub(back, front));
   const Mask empty = hn::Or(hn::Eq(total, zero), hn::Eq(nodes, zero));
-  const Float moment = hn::Mul(difference(before.y, after.y), constant(static_cast<float>(table.last_node)));
-  const Float center = hn::Div(moment, hn::IfThenElse(empty, one, total));
-  const Float t = hn::Div(hn::Sub(center, hn::ConvertTo(kFloat, front)), hn::IfThenElse(empty, one, nodes));
-  return hn::IfThenElse(empty, half, hn::Min(hn::Max(t, zero), one));
+  const Float share = hn::Div(one, hn::IfThenElse(empty, one, total));
+  const Float inverse = hn::Div(one, hn::IfThenElse(empty, one, nodes));
+  const Float mean = hn::Mul(hn::Mul(difference(before.y, after.y), share), constant(last));
+  const Float square = hn::Mul(hn::Mul(difference(before.z, after.z), share), constant(last * last));
+  const Float center = hn::Mul(hn::Sub(mean, hn::ConvertTo(kFloat, front)), inverse);
+  const Float inside = hn::Min(hn::Max(center, zero), one);
+  const Float variance = hn::Mul(hn::Sub(square, hn::Mul(mean, mean)), hn::Mul(inverse, inverse));
+  const Float widest = hn::Mul(inside, hn::Sub(one, inside));  // of all that have this centre
+  // Of a narrow range float cannot tell the variance; the extinction is about even there.
+  const Mask narrow = hn::Lt(hn::Abs(nodes), constant(last * (1.0f / 256.0f)));
+  const Float spread = hn::IfThenElse(narrow, even, hn::Min(hn::Max(variance, zero), widest));
+  return {hn::IfThenElse(empty, half, inside), hn::IfThenElse(empty, even, spread),
+          hn::Min(hn::AbsDiff(after.w, before.w), one)};
 }
+
+/// What a homogeneous medium of this opacity is seen of lies nearer than its middle by this part of its length.
+HWY_INLINE Float find_attenuation_shift(Float opacity) {
+  // The mean of u exp(-t u) / (1 - exp(-t)) * t over [0, 1] is 1 / t - 1 / (exp(t) - 1).
+  const Float one = constant(1.0f), through = hn::Max(hn::Sub(one, opacity), constant(1e-6f));
+  const Float depth = hn::Mul(log2_positive(through), constant(-0.69314718f));
+  const Float mean = hn::Sub(hn::Div(one, depth), hn::Div(through, hn::Sub(one, through)));
+  const Mask is_thin = hn::Lt(opacity, constant(0.05f));  // where rounding would show
+  return hn::IfThenElse(is_thin, hn::Mul(opacity, constant(1.0f / 12.0f)), hn::Sub(constant(0.5f), mean));
+}
+
+/// Where what is seen of a segment of this opacity comes from: its front part hides its back part, all the more the
+/// wider its extinction is spread (in a homogeneous segment, by a variance of 1/12).
+HWY_INLINE Spread find_emission(const CentroidView& table, const Segments& segment, Float opacity) {
+  const Spread extinction = find_extinction(table, segment);
+  const Float shift = hn::Mul(hn::Mul(constant(12.0f), extinction.variance), find_attenuation_shift(opacity));
+  return {hn::Max(hn::Sub(extinction.center, shift), constant(0.0f)), extinction.variance, extinction.tint};
+}
+
+/// The gradient along a stretch, in the camera frame.
+template <class Stretch>
+class GradientCourse {
+ public:
+  GradientCourse(const Stretch& stretch, const float camera_from_gradient[9])
+      : stretch_(stretch), camera_from_gradient_(camera_from_gradient) {
+    if constexpr (Stretch::kHasLinearGradient) {
+      stretch.end_gradients(ends_);
+      for (Triple& end : ends_) end = transform(camera_from_gradient, 3, end);
+    }
+  }
+
+  HWY_INLINE Triple at(Float u) const {
+    if constexpr (Stretch::kHasLinearGradient)
+      return mix(u, ends_[0], ends_[1]);
+    else
+      return transform(camera_from_gradient_, 3, stretch_.gradient(u));
+  }
+
+ private:
+  const Stretch& stretch_;
+  const float* camera_from_gradient_;
+  Triple ends_[2];
+};
 
 /// Where a stretch that is monotone between `a` and `b` takes `value`, as exactly as float can tell.
 template <class Stretch>

@@ -28,41 +28,46 @@ struct TetrahedronStretch {
 
   HWY_INLINE Float scalar(Float u) const { return multiply_add(u, hn::Sub(scalar_back, scalar_front), scalar_front); }
 
-  HWY_INLINE Triple gradient(Float u) const {
+  static constexpr bool kHasLinearGradient = true;
+  HWY_INLINE void end_gradients(Triple ends[2]) const {
     if (mesh.has_cell_gradients) {
-      const Record record = load_records(mesh.gradients, cell);
-      return {record.x, record.y, record.z};
+      ends[0] = ends[1] = load(cell);
+      return;
     }
-    Float weights[4];
-    find_weights(u, weights);
-    Triple sum{constant(0.0f), constant(0.0f), constant(0.0f)};
-    for (int k = 0; k < 4; ++k) {
-      const Record record = load_records(mesh.gradients, k < 3 ? id[k] : d);
-      sum = sum_of(sum, scaled({record.x, record.y, record.z}, weights[k]));
+    const Triple fourth = load(d);
+    for (int end = 0; end < 2; ++end) ends[end] = {constant(0.0f), constant(0.0f), constant(0.0f)};
+    for (int k = 0; k < 3; ++k) {
+      const Triple corner = load(id[k]);
+      const auto exit = [&](Float a, Float b) { return hn::IfThenElse(is_replaced[k], b, a); };
+      ends[0] = sum_of(ends[0], scaled(corner, front_weights[k]));
+      ends[1] = sum_of(ends[1], scaled({exit(corner.x, fourth.x), exit(corner.y, fourth.y), exit(corner.z, fourth.z)},
+                                       back_weights[k]));
     }
-    return sum;
+  }
+  HWY_INLINE Triple gradient(Float u) const {
+    Triple ends[2];
+    end_gradients(ends);
+    return mix(u, ends[0], ends[1]);
   }
 
   HWY_INLINE Float other(int axis, Float u) const {
     const float* others = mesh.others[axis];
     if (mesh.cell_scalars) return hn::GatherIndex(kFloat, others, hn::BitCast(kInt, cell));
-    Float weights[4], sum = constant(0.0f);
-    find_weights(u, weights);
-    for (int k = 0; k < 4; ++k)
-      sum = multiply_add(hn::GatherIndex(kFloat, others, hn::BitCast(kInt, k < 3 ? id[k] : d)), weights[k], sum);
+    const auto load_other = [&](Uint vertex) { return hn::GatherIndex(kFloat, others, hn::BitCast(kInt, vertex)); };
+    const Float v = hn::Sub(constant(1.0f), u), fourth = load_other(d);
+    Float sum = constant(0.0f);
+    for (int k = 0; k < 3; ++k) {
+      const Float corner = load_other(id[k]), exit = hn::IfThenElse(is_replaced[k], fourth, corner);
+      sum = multiply_add(hn::Mul(v, front_weights[k]), corner, sum);
+      sum = multiply_add(hn::Mul(u, back_weights[k]), exit, sum);
+    }
     return sum;
   }
 
  private:
-  /// Barycentric coordinates of a place for a, b, c, d.
-  HWY_INLINE void find_weights(Float u, Float weights[4]) const {
-    const Float v = hn::Sub(constant(1.0f), u);
-    weights[3] = constant(0.0f);
-    for (int k = 0; k < 3; ++k) {
-      const Float back = hn::Mul(u, back_weights[k]);
-      weights[k] = multiply_add(v, front_weights[k], hn::IfThenZeroElse(is_replaced[k], back));
-      weights[3] = hn::Add(weights[3], hn::IfThenElseZero(is_replaced[k], back));
-    }
+  HWY_INLINE Triple load(Uint number) const {
+    const Record record = load_records(mesh.gradients, number);
+    return {record.x, record.y, record.z};
   }
 };
 
