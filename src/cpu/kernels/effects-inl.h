@@ -27,12 +27,14 @@ template <class Base>
 class EffectIntegrator {
  public:
   using Front = typename Base::Front;
+  /// Whether the integrator asks stretches for more than the scalar (domain-inl.h).
+  static constexpr bool kIsOfDomain = requires { Base::kIsOfDomain; };
 
   explicit EffectIntegrator(const IntegratorTables& tables)
       : base_(tables),
         effects_(*tables.effects),
-        is_light_all_(effects_.shading && effects_.longest_lit == 0.0f && !is_weighted() && !effects_.depth &&
-                      !effects_.record),
+        is_light_all_(!kIsOfDomain && effects_.shading && effects_.longest_lit == 0.0f && !is_weighted() &&
+                      !effects_.depth && !effects_.record),
         is_lit_from_eye_(effects_.shading && is_lit_from_eye(*effects_.shading)) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return base_.front_at(scalar); }
@@ -47,22 +49,24 @@ class EffectIntegrator {
   template <class MakeStretch, class MakeRay>
   HWY_INLINE void integrate_lit_segment(const Segments& segment, const MakeStretch& make_stretch,
                                         const MakeRay& make_ray, Front& front, Accumulated& sum) const {
-    const Float zero = constant(0.0f);
-    Accumulated part{zero, zero, zero, sum.transmittance};
-    base_.integrate(segment, front, part);
-    const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
-    const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
-    if (hn::AllFalse(kFloat, bright)) {
-      add_usual(part, sum);
-      return;
+    if constexpr (!kIsOfDomain) {
+      const Float zero = constant(0.0f);
+      Accumulated part{zero, zero, zero, sum.transmittance};
+      base_.integrate(segment, front, part);
+      const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
+      const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
+      if (hn::AllFalse(kFloat, bright)) {
+        add_usual(part, sum);
+        return;
+      }
+      const auto stretch = make_stretch();
+      const RayView ray = make_ray();
+      Float unused = constant(0.0f);
+      const Float opacity = hn::Div(absorbed, hn::Max(sum.transmittance, constant(1e-30f)));
+      const Walk<std::remove_const_t<decltype(stretch)>> walk{stretch, ray, front, sum, unused};
+      light(walk, {constant(0.0f), segment.scalar_front}, {constant(1.0f), segment.scalar_back},
+            find_emission(effects_.centroid, segment, opacity), bright, part);
     }
-    const auto stretch = make_stretch();
-    const RayView ray = make_ray();
-    Float unused = constant(0.0f);
-    const Float opacity = hn::Div(absorbed, hn::Max(sum.transmittance, constant(1e-30f)));
-    const Walk<std::remove_const_t<decltype(stretch)>> walk{stretch, ray, front, sum, unused};
-    light(walk, {constant(0.0f), segment.scalar_front}, {constant(1.0f), segment.scalar_back},
-          find_emission(effects_.centroid, segment, opacity), bright, part);
   }
 
   /// The part of a stretch from `from` to `to`. `front`: at `from`; becomes that at `to`. `depth`: see
@@ -243,7 +247,12 @@ class EffectIntegrator {
   template <class Stretch>
   HWY_NOINLINE void integrate_pieces(const Walk<Stretch>& walk, const Cut& begin, const Cut& end, Accumulated& sum,
                                      Emission* emission) const {
-    if constexpr (Stretch::kIsLinear) {
+    if constexpr (kIsOfDomain) {
+      base_.integrate_stretch(
+          walk.stretch, begin, end, sum, emission,
+          [&](const Cut& a, const Cut& b) { return segment_between(walk.stretch, a, b).length; },
+          [&](const Cut& a, const Cut& b, Float before) { note_piece(walk, a, b, before, sum.transmittance); });
+    } else if constexpr (Stretch::kIsLinear) {
       integrate_piece(walk, begin, end, sum, emission);
     } else {
       const Float pieces = walk.stretch.count_pieces(begin, end, sum.transmittance);
@@ -267,13 +276,11 @@ class EffectIntegrator {
   template <class Stretch>
   HWY_INLINE void integrate_piece(const Walk<Stretch>& walk, const Cut& a, const Cut& b, Accumulated& sum,
                                   Emission* emission) const {
-    const Stretch& stretch = walk.stretch;
     const Float before = sum.transmittance;
-    const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
-    Segments segment{a.scalar, b.scalar, hn::Mul(stretch.length, part)};
-    if (HWY_UNLIKELY(is_weighted())) weigh(stretch, a, b, segment);
+    const Segments segment = segment_between(walk.stretch, a, b);
     base_.integrate(segment, walk.front, sum);
     if (emission) {
+      const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
       const Float absorbed = hn::Sub(before, sum.transmittance);
       const Mask is_bright = hn::Gt(absorbed, constant(effects_.faint));
       Spread inside{constant(0.5f), constant(1.0f / 12.0f), constant(0.0f), constant(0.0f)};
@@ -291,14 +298,28 @@ class EffectIntegrator {
       emission->tint = hn::Add(emission->tint, inside.tint);
       emission->unevenness = hn::Max(emission->unevenness, inside.unevenness);
     }
-    if (effects_.depth) note_depth(walk, a, b, before, sum.transmittance);
-    if (HWY_UNLIKELY(effects_.record != nullptr)) {
-      const Mask takes_part = hn::Gt(stretch.length, constant(0.0f));
-      const Float z_begin = depth_at(stretch, a.u);
-      const Float z[2] = {z_begin, hn::IfThenElse(takes_part, depth_at(stretch, b.u), z_begin)};
-      const Float ends[2] = {before, sum.transmittance};
-      record_depths(*effects_.record, walk.ray.pixels, z, ends);
-    }
+    note_piece(walk, a, b, before, sum.transmittance);
+  }
+
+  /// The piece of a stretch between two cuts, weighed.
+  template <class Stretch>
+  HWY_INLINE Segments segment_between(const Stretch& stretch, const Cut& a, const Cut& b) const {
+    const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
+    Segments segment{a.scalar, b.scalar, hn::Mul(stretch.length, part)};
+    if (HWY_UNLIKELY(is_weighted())) weigh(stretch, a, b, segment);
+    return segment;
+  }
+
+  /// Writes down what depths ask for of a piece: transmittance before and after it.
+  template <class Stretch>
+  HWY_INLINE void note_piece(const Walk<Stretch>& walk, const Cut& a, const Cut& b, Float before, Float after) const {
+    if (effects_.depth) note_depth(walk.stretch, a, b, before, after, walk.depth);
+    if (HWY_LIKELY(effects_.record == nullptr)) return;
+    const Mask takes_part = hn::Gt(walk.stretch.length, constant(0.0f));
+    const Float z_begin = depth_at(walk.stretch, a.u);
+    const Float z[2] = {z_begin, hn::IfThenElse(takes_part, depth_at(walk.stretch, b.u), z_begin)};
+    const Float ends[2] = {before, after};
+    record_depths(*effects_.record, walk.ray.pixels, z, ends);
   }
 
   HWY_INLINE bool is_weighted() const { return effects_.weight_by_change > 0.0f || effects_.weight_by_gradient > 0.0f; }
@@ -314,43 +335,18 @@ class EffectIntegrator {
       weight = hn::Min(one, hn::Mul(rate, constant(effects_.weight_by_change)));
     }
     if (effects_.weight_by_gradient > 0.0f)
-      weight = hn::Mul(
-          weight, hn::Min(one, hn::Mul(magnitude_at(stretch, middle_of(a, b)), constant(effects_.weight_by_gradient))));
+      weight = hn::Mul(weight, hn::Min(one, hn::Mul(magnitude_at(effects_, stretch, middle_of(a, b)),
+                                                    constant(effects_.weight_by_gradient))));
     segment.length = hn::Mul(segment.length, weight);
   }
 
   HWY_INLINE static Float middle_of(const Cut& a, const Cut& b) { return hn::Mul(constant(0.5f), hn::Add(a.u, b.u)); }
 
-  template <class Stretch>
-  HWY_INLINE Triple gradient_at(const Stretch& stretch, Float u) const {
-    return transform(effects_.camera_from_gradient, 3, stretch.gradient(u));
-  }
-
-  template <class Stretch>
-  HWY_INLINE Float magnitude_at(const Stretch& stretch, Float u) const {
-    const Triple gradient = gradient_at(stretch, u);
-    return hn::Sqrt(dot(gradient, gradient));
-  }
-
-  /// Where opacity passes one half.
-  template <class Stretch>
-  HWY_INLINE void note_depth(const Walk<Stretch>& walk, const Cut& a, const Cut& b, Float before, Float after) const {
-    const Float half = constant(0.5f);
-    const Mask open = hn::Eq(walk.depth, constant(std::numeric_limits<float>::infinity()));
-    const Mask passes = hn::And(open, hn::And(hn::Ge(before, half), hn::Lt(after, half)));
-    if (HWY_LIKELY(hn::AllFalse(kFloat, passes))) return;
-    const auto log = [](Float x) { return log2_positive(hn::Max(x, constant(1e-30f))); };
-    const Float span = hn::Max(hn::Sub(log(before), log(after)), constant(1e-12f));
-    const Float t = hn::Min(hn::Div(hn::Add(log(before), constant(1.0f)), span), constant(1.0f));
-    const Float u = multiply_add(t, hn::Sub(b.u, a.u), a.u);
-    walk.depth = hn::IfThenElse(passes, depth_at(walk.stretch, u), walk.depth);
-  }
-
   // ---- light ----
 
   template <class Stretch>
   HWY_INLINE Illumination light_at(const Walk<Stretch>& walk, Float u, Mask lanes, bool is_surface) const {
-    const ShadedPlace place{walk.ray.position(depth_at(walk.stretch, u)), gradient_at(walk.stretch, u),
+    const ShadedPlace place{walk.ray.position(depth_at(walk.stretch, u)), gradient_at(effects_, walk.stretch, u),
                             walk.ray.to_eye(), lanes, is_surface};
     return illuminate(*effects_.shading, place);
   }

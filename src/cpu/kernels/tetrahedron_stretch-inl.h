@@ -50,6 +50,20 @@ struct TetrahedronStretch {
     return mix(u, ends[0], ends[1]);
   }
 
+  HWY_INLINE Float other(int axis, Float u) const {
+    const float* others = mesh.others[axis];
+    if (mesh.cell_scalars) return hn::GatherIndex(kFloat, others, hn::BitCast(kInt, cell));
+    const auto load_other = [&](Uint vertex) { return hn::GatherIndex(kFloat, others, hn::BitCast(kInt, vertex)); };
+    const Float v = hn::Sub(constant(1.0f), u), fourth = load_other(d);
+    Float sum = constant(0.0f);
+    for (int k = 0; k < 3; ++k) {
+      const Float corner = load_other(id[k]), exit = hn::IfThenElse(is_replaced[k], fourth, corner);
+      sum = multiply_add(hn::Mul(v, front_weights[k]), corner, sum);
+      sum = multiply_add(hn::Mul(u, back_weights[k]), exit, sum);
+    }
+    return sum;
+  }
+
  private:
   HWY_INLINE Triple load(Uint number) const {
     const Record record = load_records(mesh.gradients, number);
