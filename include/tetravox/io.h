@@ -19,8 +19,12 @@
 
 namespace tetravox {
 
+/// Further arrays that can be read beside the one that is drawn.
+inline constexpr std::size_t kMostOtherArrays = 8;
+
 struct ReadOptions {
   ArrayRequest array;
+  std::vector<ArrayRequest> others;  ///< further fields, named: `MeshData::others`, `Dataset::other_grids`, as ordered
   TimeRequest time;
   RawLayout raw;                   ///< RAW files only
   std::string grid_file;           ///< PLOT3D: the solution (Q) file that goes with the grid at `path`
