@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,6 +61,41 @@ struct OpticalTable {
   std::vector<std::size_t> sizes;     ///< entries along each variable, at least 2
   std::vector<OpticalPoint> entries;  ///< first variable fastest; `value` unused
 };
+
+/// The widgets of `function`, sampled. Their opacities become extinctions (-ln(1 - opacity) / unit distance), which add
+/// up; colours are their mean weighted by these, and where nothing absorbs that of the nearest widget.
+///
+/// `ranges`: of each variable, for those that have none of their own; one of width 0 is widened.
+/// @throws Error (kInvalidArgument) that names the variable or widget and what is wrong with it.
+OpticalTable make_optical_table(const MultidimensionalFunction& function, std::span<const ValueRange> ranges,
+                                double default_unit_distance);
+
+/// A table of colours that are not premultiplied, and opacities, [..][4], first variable fastest; `sizes`: entries
+/// along each variable. Otherwise as above.
+OpticalTable make_optical_table(const MultidimensionalFunction& function, std::span<const ValueRange> ranges,
+                                double default_unit_distance, std::span<const std::size_t> sizes,
+                                std::span<const float> rgba);
+
+/// What is wrong with a function, before anything is known of the data: as `make_optical_table`.
+void validate_multidimensional(const MultidimensionalFunction& function);
+
+/// What is wrong with a table.
+/// @throws Error (kInvalidArgument) that names the variable or entry.
+void validate_optical_table(const OpticalTable& table);
+
+/// Extinction and colour at a place of the domain, one coordinate for each variable.
+OpticalPoint eval_optical_table(const OpticalTable& table, std::span<const double> place);
+
+/// Names of enumerators as on the command line and in scene files ("value", "gradient", "array"; "rectangle",
+/// "triangle", "gaussian"), and back.
+std::string name_of(VariableKind kind);
+std::string name_of(WidgetShape shape);
+/// @throws Error (kInvalidArgument) that lists the names there are.
+VariableKind variable_kind_from_name(const std::string& name);
+WidgetShape widget_shape_from_name(const std::string& name);
+/// Names, one-line descriptions.
+std::vector<std::pair<std::string, std::string>> variable_kind_names();
+std::vector<std::pair<std::string, std::string>> widget_shape_names();
 
 /// Colour by another array than the one that gives opacity.
 struct ColorBy {

@@ -11,6 +11,7 @@
 #include "tetravox/isosurface.h"
 #include "tetravox/lighting.h"
 #include "tetravox/mesh.h"
+#include "tetravox/multidimensional.h"
 #include "tetravox/progress.h"
 #include "tetravox/transfer_function.h"
 
@@ -78,6 +79,7 @@ struct RenderStatistics {
   std::uint64_t stopped_rays = 0;  ///< rays stopped by the bound on steps (damaged meshes only)
   int threads = 0;
   std::string instruction_set;
+  std::string integrator;  ///< name of the one that drew; "domain" for functions of several variables
 };
 
 /// Names of enumerators as on the command line and in scene files ("walk", "march"; "antiderivative", "partial",
@@ -107,10 +109,21 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// One pass over a 1D table, under a millisecond.
+  /// One pass over a 1D table, under a millisecond. What was set by the two functions below is dropped.
   /// Extinctions beyond what is opaque within a millionth of the mesh's diagonal are taken as that.
   /// @throws Error (kInvalidArgument) for no points, values that descend or are not finite, negative extinctions.
   void set_transfer_function(const OpticalFunction& function);
+
+  /// Draws by a function of two or three variables instead (docs/methods/multidimensional.md). `others`: for each of
+  /// its variables of kind kArray, in their order, which of `PreparedMesh::others` or `PreparedGrid::others` it is;
+  /// empty: 0, 1, ... A gradient comes from where `Lighting::gradient` says, whether lit or not.
+  /// @throws Error (kInvalidArgument) for a table that makes no sense, or others that there are not. Such pictures know
+  /// no post- and pre-classification and no fixed rate: `render` throws kUnsupported.
+  void set_multidimensional_function(const OpticalTable& table, const std::vector<std::size_t>& others = {});
+
+  /// Keeps the opacities of the transfer function set last, and takes the colours from another array: `colors` (its
+  /// extinctions do not count) at the values of `others[other]` of the prepared mesh or grid. Errors as above.
+  void set_color_function(std::size_t other, const OpticalFunction& colors);
 
   /// The grid of the clip volume at index `shape` of `RenderSettings::clipping`. Views it.
   void set_clip_volume(std::size_t shape, const PreparedGrid& grid);

@@ -113,18 +113,18 @@ MarchBrick BrickLattice::describe(const PreparedGrid& grid, const grid::GridFram
   return brick;
 }
 
-void BrickLattice::fill(const LatticeField& field, MarchBrick& brick) {
+int BrickLattice::fill(const LatticeField& field, MarchBrick& brick, int least_parts) {
   if (field.kernel && field.points) {
     filter_densities(field, brick);
     brick.densities = records_.data();
-    return;
+    return 1;
   }
   grid::Block values = block_;
   if (!field.is_constant || field.is_nearest)
     for (std::int64_t& count : values.count) ++count;
   int parts = 1;
   if (field.kernel) {
-    parts = filter_values(field, brick);
+    parts = filter_values(field, brick, least_parts);
   } else {
     block_ = values;
     values_.resize(static_cast<std::size_t>(block_.size()));
@@ -141,6 +141,7 @@ void BrickLattice::fill(const LatticeField& field, MarchBrick& brick) {
     fill_records(*field.kernels, brick);
     brick.records = records_.data();
   }
+  return parts;
 }
 
 /// Planes of an uneven brick whose cells are divided into `parts`.
@@ -190,14 +191,14 @@ void BrickLattice::divide_cells(const LatticeField& field, int parts, MarchBrick
 }
 
 /// Returns into how many parts the cells are divided.
-int BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick) {
+int BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick, int least_parts) {
   read_margin(field);
   divide_cells(field, 1, brick);
   // The distance of a smooth field from its lattice falls with the square of the number of parts. It has the same sign
   // for many cells on end, so that it adds up where chords' errors do not.
   constexpr float kAddsUp = 4.0f;
   const float rate = kAddsUp * measure_bend(brick) * brick.steepness;
-  int parts = brick.has_missing ? 2 : 1;  // in the middle of a cell everything in reach counts
+  int parts = std::max(brick.has_missing ? 2 : 1, least_parts);  // in the middle of a cell everything in reach counts
   while (parts < kMostParts && rate > field.allowed_rate * static_cast<float>(parts * parts)) parts *= 2;
   if (parts > 1) divide_cells(field, parts, brick);
   if (field.gradients == GradientSource::kKernel) filter_gradients(field, parts, brick);

@@ -40,8 +40,9 @@ class BrickLattice {
   static void prefetch(const LatticeField& field, const PreparedGrid& grid, std::uint32_t brick);
 
   /// Reads the values of the brick described last, and points `brick` at them. With a kernel the cells are divided
-  /// until the trilinear lattice is as near to the filtered field as `brick.steepness` asks, at most into 8^3.
-  void fill(const LatticeField& field, MarchBrick& brick);
+  /// until the trilinear lattice is as near to the filtered field as `brick.steepness` asks, at most into 8^3, and at
+  /// least into `least_parts` along each axis. Returns into how many.
+  int fill(const LatticeField& field, MarchBrick& brick, int least_parts = 1);
 
  private:
   static constexpr int kMostParts = 8;
@@ -50,7 +51,7 @@ class BrickLattice {
   void spread_values(MarchBrick& brick);
   void read_margin(const LatticeField& field);
   void divide_cells(const LatticeField& field, int parts, MarchBrick& brick);
-  int filter_values(const LatticeField& field, MarchBrick& brick);
+  int filter_values(const LatticeField& field, MarchBrick& brick, int least_parts);
   void filter_densities(const LatticeField& field, MarchBrick& brick);
   void convolve(const std::array<const std::vector<float>*, 3>& weights, int parts, std::vector<float>& nodes);
   float measure_bend(const MarchBrick& brick) const;

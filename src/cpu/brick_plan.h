@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace tetravox::cpu {
@@ -34,6 +35,9 @@ struct PlanSettings {
   bool operator==(const PlanSettings&) const = default;
 };
 
+/// Whether anything is to be seen in a brick, where more than its values says so; `range`: stored scalars of the value.
+using IsSeen = std::function<bool(std::size_t brick, const ValueRange& range)>;
+
 /// Data and function.
 struct PlanSources {
   const PreparedGrid* grid = nullptr;  ///< as it is drawn: `FilteredField::middles` where there are such
@@ -42,10 +46,18 @@ struct PlanSources {
   float node_width = 0.0f;   ///< stored scalars from node to node of the antiderivatives' table
   double diagonal = 1.0;     ///< world length of the longest ray
   bool is_constant = false;  ///< whether the scalar is constant in each cell
+  bool is_by_cells = false;  ///< whether rays go from cell to cell in any case
+  IsSeen is_seen;            ///< empty: what `steepness` says
 };
 
 /// Error in colour for one unit of world length that segments may have.
 float allowed_rate_of(double tolerance, double diagonal);
+
+/// Linear pieces that a cell is cut into at most.
+float most_pieces_of(double tolerance);
+
+/// Extinction, per world length, that counts as none.
+float allowed_haze_of(double tolerance, double diagonal);
 
 /// Range of the field in a brick; min > max where it is missing throughout.
 ValueRange range_of(const PlanSources& sources, std::size_t brick);

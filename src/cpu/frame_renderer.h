@@ -3,6 +3,7 @@
 /// What draws one kind of data: behind `Renderer`, which validates for it.
 
 #include "src/cpu/kernels/kernels.h"
+#include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
 
 #include <atomic>
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace tetravox::cpu {
 
@@ -28,6 +30,12 @@ class FrameRenderer {
 
   /// The function is valid, and its extinctions are within what float can work with.
   virtual void set_transfer_function(const OpticalFunction& function) = 0;
+  /// The same of a table, which then stands alone.
+  virtual void set_table(const OpticalTable& table, const std::vector<std::size_t>& others) = 0;
+  /// Colours beside the transfer function at hand.
+  virtual void set_colors(std::size_t other, const OpticalFunction& colors) = 0;
+  /// Whether a table or colours have been set since the last transfer function.
+  virtual bool has_domain() const = 0;
   /// Draws into `image`, whose pixels are zero. Settings and camera are valid.
   virtual void render(const Camera& camera, const RenderSettings& settings, const FrameContext& context, Image& image,
                       RenderStatistics& statistics) = 0;

@@ -3,6 +3,7 @@
 #include "src/cpu/clip_intervals.h"
 #include "src/cpu/filtered_field.h"
 #include "src/cpu/frame_renderer.h"
+#include "src/cpu/grid_domain.h"
 #include "src/cpu/grid_frame.h"
 #include "src/cpu/illustration.h"
 #include "src/grid/summaries.h"
@@ -29,12 +30,6 @@ namespace {
 
 /// A segment's colours may err by this part of the picture's tolerance.
 constexpr float kSegmentsOfTolerance = 40.0f;
-
-/// Linear pieces that a cell is cut into at most. Where a ray only touches the height at which the function has a
-/// narrow peak, a cubic needs many: twelve leave up to 2e-2 in single pixels of a function of nothing but narrow peaks,
-/// and 1e-4 elsewhere. Below `kFineTolerance` there are as many as it takes.
-constexpr float kMostPieces = 12.0f, kMostFinePieces = 256.0f;
-constexpr double kFineTolerance = 1e-4;
 
 /// Where errors of more than one 8-bit step are allowed, what comes through less than this part of the tolerance is
 /// left out.
@@ -76,6 +71,12 @@ Marches choose_illustrated_marches(const Kernels& kernels, bool is_constant, Int
   if (integrator == Integrator::kPost) return both(kernels.illustrate_march_post, nullptr);
   return {kernels.illustrate_march_antiderivative, kernels.illustrate_stride_antiderivative,
           kernels.illustrate_march_gentle_antiderivative, kernels.illustrate_stride_gentle_antiderivative};
+}
+
+Marches choose_domain_marches(const Kernels& kernels, bool is_constant, const Domain& domain) {
+  const Kernels::OfDomain& set = choose_domain_kernels(kernels, domain);
+  const Integrate march = is_constant ? set.march_cells : set.march;
+  return {march, nullptr, march, nullptr};
 }
 
 /// The parts of a tile's rays that the clipping keeps.
@@ -134,7 +135,7 @@ class TileIntervals {
 /// What one thread works with.
 struct Workspace {
   std::unique_ptr<MarchRays> rays = std::make_unique<MarchRays>();
-  BrickLattice lattice;
+  BrickLattices lattices;
   TileIntervals intervals;
 };
 
@@ -144,6 +145,7 @@ struct FrameParts {
   Rays rays;
   BrickBins bins;
   LatticeField field;
+  std::vector<LatticeField> others;
   PlanSources sources;
   Marches marches;
   const Kernels* kernels = nullptr;
@@ -174,7 +176,8 @@ class GridRenderer final : public FrameRenderer {
   explicit GridRenderer(const PreparedGrid& grid)
       : grid_(grid),
         frame_(grid::make_grid_frame(grid.data.shape)),
-        reader_(grid.data, {grid.scalar_offset, grid.scalar_scale}) {}
+        reader_(grid.data, {grid.scalar_offset, grid.scalar_scale}),
+        domain_(grid) {}
 
   void set_transfer_function(const OpticalFunction& function) override {
     const ValueRange& range = grid_.scalar_range;
@@ -182,10 +185,24 @@ class GridRenderer final : public FrameRenderer {
     optics::build_antiderivative_table(function, scalar_map(), range, diagonal(), antiderivative_);
     optics::build_steepness_table(control_points_, scalar_map().stored_from_value(range.min),
                                   scalar_map().stored_from_value(range.max), steepness_);
-    is_planned_ = false;
     has_centroids_ = false;
+    function_ = function;
+    domain_.clear();
+    is_planned_ = false;
     ++function_number_;
   }
+
+  void set_table(const OpticalTable& table, const std::vector<std::size_t>& others) override {
+    domain_.set_table(table, others);
+    is_planned_ = false;
+    ++function_number_;
+  }
+  void set_colors(std::size_t other, const OpticalFunction& colors) override {
+    domain_.set_colors(other, colors, function_);
+    is_planned_ = false;
+    ++function_number_;
+  }
+  bool has_domain() const override { return domain_.is_set(); }
 
   void render(const Camera& camera, const RenderSettings& settings, const FrameContext& context, Image& image,
               RenderStatistics& statistics) override;
@@ -197,7 +214,7 @@ class GridRenderer final : public FrameRenderer {
   std::uint64_t bytes() const override {
     return antiderivative_.bytes() + control_points_.bytes() + plans_.size() * sizeof(BrickPlan) +
            (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_ +
-           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes();
+           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes();
   }
 
   Source source() const override { return Source::kMarch; }
@@ -211,11 +228,13 @@ class GridRenderer final : public FrameRenderer {
   }
   const PreparedGrid& drawn() const { return field_.middles ? *field_.middles : grid_; }
   void prepare_filter(const RenderSettings& settings);
+  void fill_lattices(const FrameParts& frame, std::uint32_t index, Workspace& workspace, MarchBrick& brick) const;
   GradientSource choose_gradients(const RenderSettings& settings) const;
   void describe(const RenderSettings& settings, FrameParts& frame);
   ShadowedBody shadowed_body() const;
   void prepare_shadows(const Camera& camera, const RenderSettings& settings, const FrameContext& context);
   struct Pass;
+  Marches choose_kernels(const Kernels& kernels, const RenderSettings& settings, bool has_effects) const;
   void draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics);
   LatticeField lattice_field(const RenderSettings& settings, const Kernels& kernels) const;
   PlanSources plan_sources(const RenderSettings& settings) const;
@@ -229,6 +248,8 @@ class GridRenderer final : public FrameRenderer {
   grid::GridFrame frame_;
   grid::BlockReader reader_;
   FilteredField field_;
+  OpticalFunction function_;
+  GridDomain domain_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
   optics::SteepnessTable steepness_;
@@ -264,7 +285,7 @@ GradientSource GridRenderer::choose_gradients(const RenderSettings& settings) co
   if (method == GradientMethod::kVertex || method == GradientMethod::kCell)
     throw Error(ErrorCode::kInvalidArgument,
                 "gradient method '" + name_of(method) + "' is for meshes; grids have 'filter' and 'central'");
-  if (!settings.lighting.is_lit() && settings.opacity_weight != OpacityWeight::kGradient) return GradientSource::kNone;
+  if (!wants_gradients(settings) && !domain_.domain().wants_gradients()) return GradientSource::kNone;
   if (method == GradientMethod::kCentral) return GradientSource::kCentral;
   if (field_.kernel) return GradientSource::kKernel;
   // The kernels have the derivative of a trilinear cell at hand; in a constant one it is none.
@@ -274,8 +295,10 @@ GradientSource GridRenderer::choose_gradients(const RenderSettings& settings) co
 
 /// Fills the effects of a frame.
 void GridRenderer::describe(const RenderSettings& settings, FrameParts& frame) {
-  if (!has_centroids_) optics::build_centroid_table(antiderivative_, centroids_);
-  has_centroids_ = true;
+  if (!has_centroids_ && !domain_.is_set()) {
+    optics::build_centroid_table(antiderivative_, centroids_);
+    has_centroids_ = true;
+  }
   IllustratedFrame illustrated{frame.view.camera,
                                frame.view.origin,
                                frame.view.world_per_local,
@@ -283,7 +306,7 @@ void GridRenderer::describe(const RenderSettings& settings, FrameParts& frame) {
                                grid_.scalar_range,
                                diagonal(),
                                {},
-                               &centroids_};
+                               has_centroids_ ? &centroids_ : nullptr};
   const auto& axes = frame.view.camera.axes;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
@@ -300,6 +323,7 @@ ShadowedBody GridRenderer::shadowed_body() const {
 }
 
 void GridRenderer::prepare_filter(const RenderSettings& settings) {
+  domain_.prepare_filter(settings.filter);
   if (field_.kernel ? field_.filter == settings.filter : !wants_kernel(settings.filter)) return;
   is_planned_ = false;
   FilteredField field = make_filtered_field(grid_, settings.filter);
@@ -308,7 +332,10 @@ void GridRenderer::prepare_filter(const RenderSettings& settings) {
 }
 
 PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
-  return {&drawn(), &field_, &steepness_, 1.0f / antiderivative_.nodes_per_scalar, diagonal(), is_constant(settings)};
+  return {&drawn(),         &field_,
+          &steepness_,      1.0f / antiderivative_.nodes_per_scalar,
+          diagonal(),       is_constant(settings),
+          domain_.is_set(), {}};
 }
 
 void GridRenderer::plan(const RenderSettings& settings) {
@@ -319,7 +346,9 @@ void GridRenderer::plan(const RenderSettings& settings) {
     wanted.surface_values.push_back(scalar_map().stored_from_value(surface.value));
   std::sort(wanted.surface_values.begin(), wanted.surface_values.end());
   if (is_planned_ && wanted == planned_for_) return;
-  plans_ = plan_bricks(plan_sources(settings), wanted);
+  PlanSources sources = plan_sources(settings);
+  if (domain_.domain().is_table()) sources.is_seen = domain_.find_seen(settings.tolerance, diagonal());
+  plans_ = plan_bricks(sources, wanted);
   visible_.clear();
   for (std::size_t i = 0; i < plans_.size(); ++i)
     if (plans_[i].level != BrickPlan::kTransparent) visible_.push_back(static_cast<std::uint32_t>(i));
@@ -332,7 +361,7 @@ MarchJob GridRenderer::make_job(const RenderSettings& settings, const Integrator
   job.tables = &tables;
   job.steepness = &steepness_;
   job.allowed_rate = allowed_rate_of(settings.tolerance, diagonal());
-  job.most_pieces = settings.tolerance < kFineTolerance ? kMostFinePieces : kMostPieces;
+  job.most_pieces = most_pieces_of(settings.tolerance);
   job.use_early_ray_termination = settings.use_early_ray_termination;
   if (settings.tolerance > kOneStep) job.negligible = kNegligibleOfTolerance * static_cast<float>(settings.tolerance);
   if (settings.samples_per_voxel > 0.0)
@@ -340,11 +369,22 @@ MarchJob GridRenderer::make_job(const RenderSettings& settings, const Integrator
   return job;
 }
 
+/// Reads the values of a brick, and what the function asks for beside them.
+void GridRenderer::fill_lattices(const FrameParts& frame, std::uint32_t index, Workspace& workspace,
+                                 MarchBrick& brick) const {
+  if (domain_.is_set())
+    return domain_.fill({drawn(), frame_, frame.field, frame.others, index}, workspace.lattices, brick);
+  const ValueRange range = range_of(frame.sources, index);
+  brick.steepness = steepness_.largest_steepness(static_cast<float>(range.min), static_cast<float>(range.max));
+  brick.has_missing |= field_.kernel && drawn().missing_values > 0;  // a kernel reaches into other bricks
+  workspace.lattices.value.fill(frame.field, brick);
+}
+
 /// Takes the rays of the workspace through a brick; returns how many segments they had.
 std::uint64_t GridRenderer::draw_brick(const FrameParts& frame, const TilePlace& place, const BinnedBrick& binned,
                                        Workspace& workspace) const {
   const BrickPlan& plan = plans_[binned.brick];
-  MarchBrick brick = workspace.lattice.describe(drawn(), frame_, binned.brick, plan.level);
+  MarchBrick brick = workspace.lattices.value.describe(drawn(), frame_, binned.brick, plan.level);
   brick.bounds = binned.bounds;
   MarchJob job = frame.job;
   job.rays = workspace.rays.get();
@@ -362,10 +402,7 @@ std::uint64_t GridRenderer::draw_brick(const FrameParts& frame, const TilePlace&
     const int count = frame.kernels->clip_brick(job);
     if (count == 0) continue;
     if (!is_filled) {
-      const ValueRange range = range_of(frame.sources, binned.brick);
-      brick.steepness = steepness_.largest_steepness(static_cast<float>(range.min), static_cast<float>(range.max));
-      brick.has_missing |= field_.kernel && drawn().missing_values > 0;  // a kernel reaches into other bricks
-      workspace.lattice.fill(frame.field, brick);
+      fill_lattices(frame, binned.brick, workspace, brick);
       if (!plan.is_curved) brick.steepness = 0.0f;
       is_filled = true;
     }
@@ -420,7 +457,8 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
     throw Error(
         ErrorCode::kInvalidArgument,
         "pre-classification does not go with the filter 'bspline-interpolating': choose 'bspline' or 'catmull-rom'");
-  const bool has_effects = wants_effects(settings);
+  const bool has_effects = wants_effects(settings) || domain_.is_set();
+  if (domain_.is_set()) require_domain_settings(settings);
   if (has_effects) require_effects(settings, is_constant(settings));
   const support::Timer timer;
   prepare_filter(settings);
@@ -441,6 +479,12 @@ void GridRenderer::prepare_shadows(const Camera& camera, const RenderSettings& s
                    context.progress);
 }
 
+Marches GridRenderer::choose_kernels(const Kernels& kernels, const RenderSettings& settings, bool has_effects) const {
+  if (domain_.is_set()) return choose_domain_marches(kernels, is_constant(settings), domain_.domain());
+  return has_effects ? choose_illustrated_marches(kernels, is_constant(settings), settings.integrator)
+                     : choose_marches(kernels, is_constant(settings), settings);
+}
+
 /// Draws with the plans at hand.
 void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics) {
   const RenderSettings& settings = pass.settings;
@@ -455,13 +499,15 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
                           field_.kernel != nullptr};
   FrameParts frame;
   tables.effects = &frame.illustration.effects;
+  const DomainFunction domain = make_domain_function(domain_.domain(), settings.tolerance, diagonal());
+  tables.domain = &domain;
   frame.view = make_grid_view(drawn(), frame_, pass.camera, settings.width, settings.height);
   frame.rays = make_rays(frame.view.camera, frame.view.world_per_local);
   frame.bins = bin_bricks(drawn(), frame_, visible_, frame.view);
   frame.field = lattice_field(settings, kernels);
+  frame.others = domain_.make_fields(frame.field);
   frame.sources = plan_sources(settings);
-  frame.marches = has_effects ? choose_illustrated_marches(kernels, is_constant(settings), settings.integrator)
-                              : choose_marches(kernels, is_constant(settings), settings);
+  frame.marches = choose_kernels(kernels, settings, has_effects);
   frame.kernels = &kernels;
   frame.job = make_job(settings, tables);
   frame.job.grid = &frame.rays.grid;

@@ -1,4 +1,5 @@
 #include "src/cpu/clip_intervals.h"
+#include "src/cpu/domain.h"
 #include "src/cpu/entries.h"
 #include "src/cpu/eye_cells.h"
 #include "src/cpu/frame.h"
@@ -119,8 +120,20 @@ class MeshRenderer final : public FrameRenderer {
     if (mesh_.association == Association::kPoint)
       optics::build_antiderivative_table(function, map, mesh_.scalar_range, diagonal(), antiderivative_);
     has_centroids_ = false;
+    function_ = function;
+    domain_ = {};
     ++function_number_;
   }
+
+  void set_table(const OpticalTable& table, const std::vector<std::size_t>& others) override {
+    domain_ = make_table_domain(table, others, scalars());
+    ++function_number_;
+  }
+  void set_colors(std::size_t other, const OpticalFunction& colors) override {
+    domain_ = make_color_domain(other, colors, function_, scalars());
+    ++function_number_;
+  }
+  bool has_domain() const override { return domain_.is_set(); }
 
   void render(const Camera& camera, const RenderSettings& settings, const FrameContext& context, Image& image,
               RenderStatistics& statistics) override;
@@ -132,20 +145,25 @@ class MeshRenderer final : public FrameRenderer {
   std::uint64_t bytes() const override {
     return (vertices_ ? mesh_.vertices.size() * 4 * sizeof(float) : 0) + frame_bytes_ + antiderivative_.bytes() +
            control_points_.bytes() + gradients_.records.size() * sizeof(mesh::Gradient) +
-           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes();
+           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes();
   }
 
   Source source() const override { return Source::kWalk; }
   double diagonal() const override { return diagonal_of(mesh_.bounds); }
 
  private:
+  DomainScalars scalars() const;
   ShadowedBody shadowed_body() const { return {mesh_.bounds, mesh_.origin, mesh_.world_per_local}; }
   struct Pass;
+  using WalkKernel = WalkStatistics (*)(const WalkJob&);
+  WalkKernel choose_kernel(const Kernels& kernels, const RenderSettings& settings, bool has_effects) const;
   void prepare_effects(const RenderSettings& settings);
   void describe(const RenderSettings& settings, Frame& frame, Illustration& illustration) const;
   void draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics);
 
   const PreparedMesh& mesh_;
+  OpticalFunction function_;
+  Domain domain_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
   bool has_centroids_ = false;
@@ -157,6 +175,20 @@ class MeshRenderer final : public FrameRenderer {
   std::uint64_t frame_bytes_ = 0;      // of what the last frame needed beside the vertices
 };
 
+DomainScalars MeshRenderer::scalars() const {
+  const bool is_cell = mesh_.association == Association::kCell;
+  const std::size_t wanted = is_cell ? mesh_.cells.size() : mesh_.vertices.size();
+  DomainScalars scalars{{mesh_.scalar_offset, mesh_.scalar_scale}, mesh::gradient_scale(mesh_), {}};
+  for (const OtherScalars& other : mesh_.others) {
+    if (other.scalars.size() != wanted)
+      throw Error(ErrorCode::kInvalidArgument, "a further field of the mesh has " +
+                                                   std::to_string(other.scalars.size()) + " values where the " +
+                                                   (is_cell ? "cells are " : "vertices are ") + std::to_string(wanted));
+    scalars.others.push_back({other.offset, other.scale});
+  }
+  return scalars;
+}
+
 /// A picture, or the depths that a light sees.
 struct MeshRenderer::Pass {
   const Camera& camera;
@@ -165,9 +197,19 @@ struct MeshRenderer::Pass {
   const DepthRecord* record = nullptr;
 };
 
+MeshRenderer::WalkKernel MeshRenderer::choose_kernel(const Kernels& kernels, const RenderSettings& settings,
+                                                     bool has_effects) const {
+  if (domain_.is_set()) {
+    const Kernels::OfDomain& set = choose_domain_kernels(kernels, domain_);
+    return mesh_.association == Association::kCell ? set.walk_cells : set.walk;
+  }
+  const auto choose = has_effects ? &choose_illustrated_walk : &choose_walk;
+  return choose(kernels, mesh_.association, settings.integrator, antiderivative_.is_gentle);
+}
+
 /// Makes what effects need and no frame changes.
 void MeshRenderer::prepare_effects(const RenderSettings& settings) {
-  if (!has_centroids_ && mesh_.association == Association::kPoint) {
+  if (!has_centroids_ && !domain_.is_set() && mesh_.association == Association::kPoint) {
     optics::build_centroid_table(antiderivative_, centroids_);
     has_centroids_ = true;
   }
@@ -176,7 +218,8 @@ void MeshRenderer::prepare_effects(const RenderSettings& settings) {
   if (method != GradientMethod::kVertex && method != GradientMethod::kCell)
     throw Error(ErrorCode::kInvalidArgument,
                 "gradient method '" + name_of(method) + "' is for grids; meshes have 'vertex' and 'cell'");
-  if (!wants_gradients(settings) || gradients_.method == method) return;
+  const bool is_wanted = wants_gradients(settings) || domain_.wants_gradients();
+  if (!is_wanted || gradients_.method == method) return;
   const bool is_of_cells = method == GradientMethod::kCell;
   support::require_memory((is_of_cells ? mesh_.cells.size() : mesh_.vertices.size()) * 4 * sizeof(float),
                           "the gradients of the mesh");
@@ -188,6 +231,8 @@ void MeshRenderer::prepare_effects(const RenderSettings& settings) {
 void MeshRenderer::describe(const RenderSettings& settings, Frame& frame, Illustration& illustration) const {
   frame.mesh.gradients = gradients_.records.empty() ? nullptr : gradients_.records.front().data();
   frame.mesh.has_cell_gradients = gradients_.method == GradientMethod::kCell;
+  for (std::size_t axis = 0; axis < domain_.others.size(); ++axis)
+    if (domain_.others[axis]) frame.mesh.others[axis] = mesh_.others[*domain_.others[axis]].scalars.data();
   IllustratedFrame illustrated{frame.camera,
                                mesh_.origin,
                                mesh_.world_per_local,
@@ -206,7 +251,8 @@ void MeshRenderer::describe(const RenderSettings& settings, Frame& frame, Illust
 void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, const FrameContext& context,
                           Image& image, RenderStatistics& statistics) {
   if (!vertices_) vertices_ = std::make_unique_for_overwrite<float[]>(4 * mesh_.vertices.size());
-  const bool has_effects = wants_effects(settings);
+  const bool has_effects = wants_effects(settings) || domain_.is_set();
+  if (domain_.is_set()) require_domain_settings(settings);
   if (has_effects) {
     require_effects(settings, mesh_.association == Association::kCell);
     prepare_effects(settings);
@@ -234,10 +280,9 @@ void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
                           settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,
                           static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, settings.samples};
   tables.effects = &illustration.effects;
-  const auto walk =
-      pass.has_effects
-          ? choose_illustrated_walk(kernels, mesh_.association, settings.integrator, antiderivative_.is_gentle)
-          : choose_walk(kernels, mesh_.association, settings.integrator, antiderivative_.is_gentle);
+  const DomainFunction domain = make_domain_function(domain_, settings.tolerance, diagonal());
+  tables.domain = &domain;
+  const auto walk = choose_kernel(kernels, settings, pass.has_effects);
   const ClipScene clip = make_clip_scene(settings.clipping, context.clip_volumes,
                                          world_from_camera(frame.camera, mesh_.origin, mesh_.world_per_local));
   std::atomic<std::uint64_t> segments{0}, stopped_rays{0}, rays{0};

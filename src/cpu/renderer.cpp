@@ -17,7 +17,7 @@ namespace tetravox {
 
 struct Renderer::State {
   std::unique_ptr<cpu::FrameRenderer> frames;
-  bool has_function = false;
+  bool has_function = false, has_table = false;
   std::vector<const PreparedGrid*> clip_volumes = {};
   std::uint64_t clip_number = 0;
 };
@@ -58,11 +58,19 @@ void validate_function(const OpticalFunction& function) {
   }
 }
 
-/// The function with extinctions that float can work with: what is opaque within a millionth of the diagonal is opaque.
+/// Float can work with extinctions up to that: what is opaque within a millionth of the diagonal is opaque.
+double largest_extinction(double longest) { return 1e6 / std::max(longest, 1e-300); }
+
 OpticalFunction limit_extinction(const OpticalFunction& function, double longest) {
-  const double largest = 1e6 / std::max(longest, 1e-300);
   OpticalFunction limited = function;
-  for (OpticalPoint& point : limited.points) point.extinction = std::min(point.extinction, largest);
+  for (OpticalPoint& point : limited.points) point.extinction = std::min(point.extinction, largest_extinction(longest));
+  return limited;
+}
+
+OpticalTable limit_extinction(const OpticalTable& table, double longest) {
+  OpticalTable limited = table;
+  for (OpticalPoint& entry : limited.entries)
+    entry.extinction = std::min(entry.extinction, largest_extinction(longest));
   return limited;
 }
 
@@ -93,6 +101,21 @@ void Renderer::set_transfer_function(const OpticalFunction& function) {
   validate_function(function);
   state_->frames->set_transfer_function(limit_extinction(function, state_->frames->diagonal()));
   state_->has_function = true;
+  state_->has_table = false;
+}
+
+void Renderer::set_multidimensional_function(const OpticalTable& table, const std::vector<std::size_t>& others) {
+  validate_optical_table(table);
+  state_->frames->set_table(limit_extinction(table, state_->frames->diagonal()), others);
+  state_->has_function = state_->has_table = true;
+}
+
+void Renderer::set_color_function(std::size_t other, const OpticalFunction& colors) {
+  validate_function(colors);
+  if (!state_->has_function || state_->has_table)
+    throw Error(ErrorCode::kInvalidArgument,
+                "colours from another array go with the opacities of a transfer function: set that before");
+  state_->frames->set_colors(other, colors);
 }
 
 Image Renderer::render(const Camera& camera, const RenderSettings& settings, RenderStatistics* statistics,
@@ -119,6 +142,7 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
   });
   drawn.seconds = timer.seconds();
   drawn.threads = settings.threads > 0 ? settings.threads : support::hardware_threads();
+  drawn.integrator = frames.has_domain() ? "domain" : name_of(settings.integrator);
   drawn.instruction_set = settings.instruction_set.empty() ? cpu::best_instruction_set() : settings.instruction_set;
   if (statistics) *statistics = drawn;
   return image;

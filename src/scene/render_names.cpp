@@ -1,6 +1,7 @@
-/// Names of sources and integrators, for command lines and scene files.
+/// Names of enumerators, for command lines and scene files.
 
 #include "tetravox/error.h"
+#include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
 
 #include <array>
@@ -50,6 +51,16 @@ constexpr std::array<Name<LightKind>, 3> kLightKinds{{{LightKind::kHeadlight, "h
 constexpr std::array<Name<ShadowKind>, 2> kShadowKinds{
     {{ShadowKind::kNone, "none", "light reaches everything"},
      {ShadowKind::kVolume, "volume", "optical depth towards each light, on a lattice that it sees"}}};
+
+constexpr std::array<Name<VariableKind>, 3> kVariableKinds{
+    {{VariableKind::kValue, "value", "the value drawn"},
+     {VariableKind::kGradient, "gradient", "its gradient magnitude (Kindlmann and Durkin 1998)"},
+     {VariableKind::kArray, "array", "the value of another array"}}};
+
+constexpr std::array<Name<WidgetShape>, 3> kWidgetShapes{
+    {{WidgetShape::kRectangle, "rectangle", "the same all over"},
+     {WidgetShape::kTriangle, "triangle", "widens upwards from its apex (Levoy 1988; Kniss, Kindlmann, Hansen 2002)"},
+     {WidgetShape::kGaussian, "gaussian", "falls in all directions (Kniss et al. 2003)"}}};
 
 template <class Names>
 auto enumerator_from_name(const Names& names, std::string_view name, std::string_view what) {
@@ -105,5 +116,16 @@ std::vector<std::pair<std::string, std::string>> integrator_names() { return lis
 std::vector<std::pair<std::string, std::string>> opacity_weight_names() { return list_names(kOpacityWeights); }
 std::vector<std::pair<std::string, std::string>> gradient_method_names() { return list_names(kGradientMethods); }
 std::vector<std::pair<std::string, std::string>> shadow_kind_names() { return list_names(kShadowKinds); }
+
+std::string name_of(VariableKind kind) { return name_of_enumerator(kVariableKinds, kind); }
+std::string name_of(WidgetShape shape) { return name_of_enumerator(kWidgetShapes, shape); }
+VariableKind variable_kind_from_name(const std::string& name) {
+  return enumerator_from_name(kVariableKinds, name, "kind of variable");
+}
+WidgetShape widget_shape_from_name(const std::string& name) {
+  return enumerator_from_name(kWidgetShapes, name, "shape of widget");
+}
+std::vector<std::pair<std::string, std::string>> variable_kind_names() { return list_names(kVariableKinds); }
+std::vector<std::pair<std::string, std::string>> widget_shape_names() { return list_names(kWidgetShapes); }
 
 }  // namespace tetravox

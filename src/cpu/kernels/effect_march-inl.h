@@ -27,8 +27,11 @@ struct CellStretch {
   const LatticeRays& rays;
   const CellCorners& corners;
   const CellCubic& cubic;
+  const CellCubic* others = nullptr;  ///< [kMostVariables] of the function's axes that have one
 
   HWY_INLINE Float scalar(Float u) const { return cubic.eval(u); }
+  HWY_INLINE Float other(int axis, Float u) const { return others[axis].eval(u); }
+  HWY_INLINE Float other_bend(int axis) const { return others[axis].bend(); }
   HWY_INLINE Float bend() const { return cubic.bend(); }
   HWY_INLINE Float slope(Float u) const {
     const Float two_c2 = hn::Add(cubic.c2, cubic.c2), three_c3 = hn::Mul(constant(3.0f), cubic.c3);
@@ -141,6 +144,7 @@ struct ConstantStretch {
   Int cell;
 
   HWY_INLINE Float scalar(Float) const { return scalar_front; }
+  HWY_INLINE Float other(int axis, Float) const { return hn::GatherIndex(kFloat, brick.others[axis], cell); }
   HWY_INLINE Triple gradient(Float) const {
     if (!brick.gradients) return {constant(0.0f), constant(0.0f), constant(0.0f)};
     const Record r = load_table_records(brick.gradients, hn::BitCast(kUint, cell));
@@ -227,7 +231,10 @@ class EffectMarcher {
       const Mask touches = hn::Le(hn::Sub(back, rays.front), least);
       const Float scalar_back = hn::IfThenElse(touches, scalar_front, cubic.back());
       length = hn::IfThenZeroElse(touches, length);
-      const CellStretch stretch{scalar_front, scalar_back, rays.front, back, length, job_, rays, corners, cubic};
+      CellCubic others[kMostVariables];
+      if constexpr (Integrator::kIsOfDomain) find_others(rays, back, others);
+      const CellStretch stretch{scalar_front, scalar_back, rays.front, back,  length,
+                                job_,         rays,        corners,    cubic, others};
       integrator_.integrate_stretch(stretch, passing.view, constant(0.0f), constant(1.0f), front, sum, passing.depth);
       scalar_front = scalar_back;
       passing.z_left = hn::IfThenElse(rays.alive, back, passing.z_left);
@@ -235,6 +242,13 @@ class EffectMarcher {
       rays.template advance<true>(back);  // a wrong cell may hold surfaces
     }
     store_accumulated(sum, job_, first, count);
+  }
+
+  /// Cubics of the other scalars that the function asks for.
+  HWY_INLINE void find_others(const LatticeRays& rays, Float back, CellCubic others[kMostVariables]) const {
+    for (int axis = 0; axis < kMostVariables; ++axis)
+      if (const float* records = brick_.others[axis])
+        others[axis] = make_cubic(CellCorners(brick_, records, rays.cell), rays, back);
   }
 
   void march_constants(int first, int count, PassingRays& passing) {

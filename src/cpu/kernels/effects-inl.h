@@ -26,12 +26,14 @@ template <class Base>
 class EffectIntegrator {
  public:
   using Front = typename Base::Front;
+  /// Whether the integrator asks stretches for more than the scalar (domain-inl.h).
+  static constexpr bool kIsOfDomain = requires { Base::kIsOfDomain; };
 
   explicit EffectIntegrator(const IntegratorTables& tables)
       : base_(tables),
         effects_(*tables.effects),
-        is_light_all_(effects_.shading && effects_.longest_lit == 0.0f && !is_weighted() && !effects_.depth &&
-                      !effects_.record),
+        is_light_all_(!kIsOfDomain && effects_.shading && effects_.longest_lit == 0.0f && !is_weighted() &&
+                      !effects_.depth && !effects_.record),
         is_lit_from_eye_(effects_.shading && is_lit_from_eye(*effects_.shading)) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return base_.front_at(scalar); }
@@ -46,17 +48,19 @@ class EffectIntegrator {
   template <class MakeStretch, class MakeRay>
   HWY_INLINE void integrate_lit_segment(const Segments& segment, const MakeStretch& make_stretch,
                                         const MakeRay& make_ray, Front& front, Accumulated& sum) const {
-    const Float zero = constant(0.0f);
-    Accumulated part{zero, zero, zero, sum.transmittance};
-    base_.integrate(segment, front, part);
-    const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
-    const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
-    if (hn::AllFalse(kFloat, bright)) {
-      add_usual(part, sum);
-      return;
+    if constexpr (!kIsOfDomain) {
+      const Float zero = constant(0.0f);
+      Accumulated part{zero, zero, zero, sum.transmittance};
+      base_.integrate(segment, front, part);
+      const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
+      const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
+      if (hn::AllFalse(kFloat, bright)) {
+        add_usual(part, sum);
+        return;
+      }
+      const auto stretch = make_stretch();
+      add_lit(stretch, make_ray(), find_centroid(effects_.centroid, segment), bright, part, sum);
     }
-    const auto stretch = make_stretch();
-    add_lit(stretch, make_ray(), find_centroid(effects_.centroid, segment), bright, part, sum);
   }
 
   /// The part of a stretch from `from` to `to`. `front`: at `from`; becomes that at `to`. `depth`: see
@@ -231,10 +235,14 @@ class EffectIntegrator {
   template <class Stretch>
   HWY_NOINLINE void integrate_pieces(const Walk<Stretch>& walk, const Cut& begin, const Cut& end, Accumulated& sum,
                                      Emission* emission) const {
-    if constexpr (Stretch::kIsLinear) {
+    if constexpr (Stretch::kIsLinear && !kIsOfDomain) {
       integrate_piece(walk, begin, end, sum, emission);
     } else {
-      const Float pieces = walk.stretch.count_pieces(begin, end, sum.transmittance);
+      Float pieces;
+      if constexpr (kIsOfDomain)
+        pieces = base_.count_pieces(walk.stretch, begin, end, sum.transmittance);
+      else
+        pieces = walk.stretch.count_pieces(begin, end, sum.transmittance);
       const Float share = hn::Div(hn::Sub(end.u, begin.u), pieces);
       if (emission) emission->is_single = hn::Le(pieces, constant(1.0f));
       Cut at = begin;
@@ -261,8 +269,13 @@ class EffectIntegrator {
     const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
     Segments segment{a.scalar, b.scalar, hn::Mul(stretch.length, part)};
     if (HWY_UNLIKELY(is_weighted())) weigh(stretch, a, b, segment);
-    base_.integrate(segment, walk.front, sum);
-    if (emission) {
+    if constexpr (kIsOfDomain) {
+      base_.integrate_piece(stretch, a, b, segment.length, sum, emission ? &emission->moment : nullptr);
+      if (emission) emission->is_single = hn::FirstN(kFloat, 0);  // the moment says it all
+    } else {
+      base_.integrate(segment, walk.front, sum);
+    }
+    if (!kIsOfDomain && emission) {
       const Float absorbed = hn::Sub(before, sum.transmittance);
       const Mask wants_place = hn::And(emission->is_single, hn::Gt(absorbed, constant(effects_.faint)));
       Float place = constant(0.5f);
@@ -295,23 +308,12 @@ class EffectIntegrator {
       weight = hn::Min(one, hn::Mul(rate, constant(effects_.weight_by_change)));
     }
     if (effects_.weight_by_gradient > 0.0f)
-      weight = hn::Mul(
-          weight, hn::Min(one, hn::Mul(magnitude_at(stretch, middle_of(a, b)), constant(effects_.weight_by_gradient))));
+      weight = hn::Mul(weight, hn::Min(one, hn::Mul(magnitude_at(effects_, stretch, middle_of(a, b)),
+                                                    constant(effects_.weight_by_gradient))));
     segment.length = hn::Mul(segment.length, weight);
   }
 
   HWY_INLINE static Float middle_of(const Cut& a, const Cut& b) { return hn::Mul(constant(0.5f), hn::Add(a.u, b.u)); }
-
-  template <class Stretch>
-  HWY_INLINE Triple gradient_at(const Stretch& stretch, Float u) const {
-    return transform(effects_.camera_from_gradient, 3, stretch.gradient(u));
-  }
-
-  template <class Stretch>
-  HWY_INLINE Float magnitude_at(const Stretch& stretch, Float u) const {
-    const Triple gradient = gradient_at(stretch, u);
-    return hn::Sqrt(dot(gradient, gradient));
-  }
 
   /// Where opacity passes one half.
   template <class Stretch>
@@ -331,7 +333,7 @@ class EffectIntegrator {
 
   template <class Stretch>
   HWY_INLINE Illumination light_at(const Walk<Stretch>& walk, Float u, Mask lanes, bool is_surface) const {
-    const ShadedPlace place{walk.ray.position(depth_at(walk.stretch, u)), gradient_at(walk.stretch, u),
+    const ShadedPlace place{walk.ray.position(depth_at(walk.stretch, u)), gradient_at(effects_, walk.stretch, u),
                             walk.ray.to_eye(), lanes, is_surface};
     return illuminate(*effects_.shading, place);
   }
@@ -369,7 +371,7 @@ class EffectIntegrator {
   HWY_NOINLINE void add_lit(const Stretch& stretch, const RayView& ray, Float u, Mask bright, const Accumulated& part,
                             Accumulated& sum) const {
     const Float absorbed = hn::Sub(sum.transmittance, part.transmittance), usual = constant(effects_.usual_light);
-    const Triple gradient = gradient_at(stretch, u);
+    const Triple gradient = gradient_at(effects_, stretch, u);
     const Illumination light =
         is_lit_from_eye_ ? illuminate_from_eye(*effects_.shading, gradient, ray.direction())
                          : illuminate(*effects_.shading,

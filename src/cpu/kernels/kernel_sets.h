@@ -9,5 +9,6 @@ namespace tetravox::cpu {
 void add_walk_kernels(Kernels& kernels);    ///< of meshes
 void add_march_kernels(Kernels& kernels);   ///< of grids
 void add_effect_kernels(Kernels& kernels);  ///< of both, with effects
+void add_domain_kernels(Kernels& kernels);  ///< of both, for functions of several variables
 
 }  // namespace tetravox::cpu

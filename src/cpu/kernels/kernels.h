@@ -5,6 +5,7 @@
 /// The kernels are compiled once for each instruction set and chosen at run time (kernels.cpp). All of them use the
 /// same operations in the same order, without fused multiply-add, so that every instruction set gives the same bits.
 
+#include "src/cpu/kernels/domain.h"
 #include "src/cpu/kernels/effects.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/steepness_table.h"
@@ -42,6 +43,8 @@ struct FrameMesh {
   const BoundaryFace* faces = nullptr;  ///< where rays enter: the boundary, then the faces of cells around the eye
   const float* gradients = nullptr;     ///< [vertices][4], or [cells][4] where `has_cell_gradients`; for effects
   bool has_cell_gradients = false;
+  /// Further stored scalars, [vertices], or [cells] with cell data; one for each axis of a function that asks for it.
+  const float* others[kMostVariables] = {};
 };
 
 /// What integrators look up; each uses one or two of them.
@@ -51,8 +54,9 @@ struct IntegratorTables {
   const optics::TransparencyTable* transparency = nullptr;
   float tolerance = 5e-5f;
   int samples = 8;
-  bool may_overshoot = false;        ///< whether scalars may lie beyond the range of the data
-  const Effects* effects = nullptr;  ///< of the kernels with effects
+  bool may_overshoot = false;              ///< whether scalars may lie beyond the range of the data
+  const Effects* effects = nullptr;        ///< of the kernels with effects
+  const DomainFunction* domain = nullptr;  ///< of those for functions of several variables
 };
 
 /// Where a ray enters the mesh.
@@ -154,8 +158,9 @@ struct MarchBrick {
   const float* densities = nullptr;  ///< [z nodes][y nodes][x nodes][4] instead: rho, rho * colour
   const float* constants = nullptr;  ///< [z cells][y cells][x cells] instead, where the scalar is constant in each cell
   const float* gradients = nullptr;  ///< [z nodes][y nodes][x nodes][4], or like `constants`; in grid coordinates
-  bool has_missing = false;          ///< whether a corner is not a number
-  float steepness = 0.0f;            ///< largest change of density with the scalar in the brick
+  const float* others[kMostVariables] = {};  ///< like `records` or `constants`: of the axes of a function of several
+  bool has_missing = false;                  ///< whether a corner is not a number
+  float steepness = 0.0f;                    ///< largest change of density with the scalar in the brick
 };
 
 struct MarchJob {
@@ -230,6 +235,14 @@ struct Kernels {
   std::uint64_t (*illustrate_march_partial)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*illustrate_march_post)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*illustrate_march_cells)(const MarchJob& job, int count) = nullptr;
+  /// The same for what `IntegratorTables::domain` asks for, with or without effects.
+  struct OfDomain {
+    WalkStatistics (*walk)(const WalkJob& job) = nullptr;
+    WalkStatistics (*walk_cells)(const WalkJob& job) = nullptr;
+    std::uint64_t (*march)(const MarchJob& job, int count) = nullptr;
+    std::uint64_t (*march_cells)(const MarchJob& job, int count) = nullptr;
+  };
+  OfDomain domain_2d, domain_3d, separate_colors;
 };
 
 /// Names of the instruction sets that were compiled in and that this machine has, best first.

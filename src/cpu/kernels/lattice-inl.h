@@ -225,9 +225,11 @@ inline void make_records(const float* nodes, const std::int32_t cells[3], float*
 struct CellCorners {
   Record low, high;
 
-  HWY_INLINE CellCorners(const MarchBrick& brick, Int cell) {
-    low = load_table_records(brick.records, hn::BitCast(kUint, cell));
-    high = load_table_records(brick.records + 4 * static_cast<std::ptrdiff_t>(brick.cells[0]) * brick.cells[1],
+  HWY_INLINE CellCorners(const MarchBrick& brick, Int cell) : CellCorners(brick, brick.records, cell) {}
+  /// Of another field in the same lattice.
+  HWY_INLINE CellCorners(const MarchBrick& brick, const float* records, Int cell) {
+    low = load_table_records(records, hn::BitCast(kUint, cell));
+    high = load_table_records(records + 4 * static_cast<std::ptrdiff_t>(brick.cells[0]) * brick.cells[1],
                               hn::BitCast(kUint, cell));
   }
 

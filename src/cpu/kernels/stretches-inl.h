@@ -6,7 +6,10 @@
 // - Float scalar(Float u): strictly inside;
 // - Triple gradient(Float u);
 // - static constexpr bool kIsLinear, and where it is not: void find_extrema(Float extrema[2]), Float bend(),
-// - Float slope(Float u), Float count_pieces(from, to, transmittance): linear pieces that the tolerance asks for.
+// - Float slope(Float u), Float count_pieces(from, to, transmittance): linear pieces that the tolerance asks for;
+// - for functions of several variables: Float other(int axis, Float u), the scalar of another array, and where it is
+// not
+//   linear: Float other_bend(int axis).
 
 #if defined(TETRAVOX_CPU_STRETCHES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETRAVOX_CPU_STRETCHES_INL
@@ -56,6 +59,18 @@ HWY_INLINE Cut cut_at(const Stretch& stretch, Float u) {
 template <class Stretch>
 HWY_INLINE Float depth_at(const Stretch& stretch, Float u) {
   return multiply_add(u, hn::Sub(stretch.z_back, stretch.z_front), stretch.z_front);
+}
+
+/// Camera frame, stored scalars a local length.
+template <class Stretch>
+HWY_INLINE Triple gradient_at(const Effects& effects, const Stretch& stretch, Float u) {
+  return transform(effects.camera_from_gradient, 3, stretch.gradient(u));
+}
+
+template <class Stretch>
+HWY_INLINE Float magnitude_at(const Effects& effects, const Stretch& stretch, Float u) {
+  const Triple gradient = gradient_at(effects, stretch, u);
+  return hn::Sqrt(dot(gradient, gradient));
 }
 
 /// Writes down optical depths at the slices between two depths.

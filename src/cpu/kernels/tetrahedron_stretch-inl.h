@@ -43,6 +43,16 @@ struct TetrahedronStretch {
     return sum;
   }
 
+  HWY_INLINE Float other(int axis, Float u) const {
+    const float* others = mesh.others[axis];
+    if (mesh.cell_scalars) return hn::GatherIndex(kFloat, others, hn::BitCast(kInt, cell));
+    Float weights[4], sum = constant(0.0f);
+    find_weights(u, weights);
+    for (int k = 0; k < 4; ++k)
+      sum = multiply_add(hn::GatherIndex(kFloat, others, hn::BitCast(kInt, k < 3 ? id[k] : d)), weights[k], sum);
+    return sum;
+  }
+
  private:
   /// Barycentric coordinates of a place for a, b, c, d.
   HWY_INLINE void find_weights(Float u, Float weights[4]) const {

@@ -1,0 +1,192 @@
+#include "src/cpu/domain.h"
+
+#include "src/cpu/brick_plan.h"
+#include "tetravox/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetravox::cpu {
+namespace {
+
+std::size_t require_other(std::size_t other, const DomainScalars& scalars) {
+  if (other >= scalars.others.size())
+    throw Error(ErrorCode::kInvalidArgument, "the function asks for array " + std::to_string(other) + " of " +
+                                                 std::to_string(scalars.others.size()) +
+                                                 " further ones: prepare the data with all of them");
+  return other;
+}
+
+/// `map`: of the axis' scalars.
+DomainAxis make_axis(DomainAxis::Source source, const optics::ScalarMap& map, const ValueRange& range,
+                     std::size_t size) {
+  DomainAxis axis;
+  axis.source = source;
+  axis.first = map.stored_from_value(range.min);
+  axis.last = static_cast<std::int32_t>(size) - 1;
+  axis.entries_per_scalar = static_cast<float>(axis.last * map.scale / (range.max - range.min));
+  return axis;
+}
+
+/// Largest change of density from entry to entry along an axis.
+float find_steepness(const std::vector<float>& entries, std::size_t stride, std::size_t size) {
+  float largest = 0.0f;
+  for (std::size_t i = 0; i < entries.size() / 4; ++i) {
+    if (i / stride % size + 1 == size) continue;
+    const float *a = entries.data() + 4 * i, *b = a + 4 * stride;
+    largest = std::max(largest, std::abs(b[0] - a[0]));
+    for (int channel = 1; channel < 4; ++channel)
+      largest = std::max(largest, std::abs(b[0] * b[channel] - a[0] * a[channel]));
+  }
+  return largest;
+}
+
+/// Largest change of the extinction with the value, and of the colour; huge at steps.
+struct Slopes {
+  double extinction = 0.0, color = 0.0;
+};
+Slopes find_slopes(const OpticalFunction& function) {
+  constexpr double kNarrowest = 1e-4;  // of the range: what is steeper counts as a step
+  Slopes slopes;
+  const auto& points = function.points;
+  const double least = kNarrowest * (points.back().value - points.front().value);
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double width = std::max(points[i].value - points[i - 1].value, least);
+    if (!(width > 0.0)) continue;
+    slopes.extinction = std::max(slopes.extinction, std::abs(points[i].extinction - points[i - 1].extinction) / width);
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      slopes.color = std::max(slopes.color, std::abs(points[i].color[channel] - points[i - 1].color[channel]) / width);
+  }
+  return slopes;
+}
+
+}  // namespace
+
+bool Domain::wants_gradients() const {
+  return std::any_of(axes.begin(), axes.begin() + count,
+                     [](const DomainAxis& axis) { return axis.source == DomainAxis::Source::kGradient; });
+}
+
+Domain make_table_domain(const OpticalTable& table, const std::vector<std::size_t>& others,
+                         const DomainScalars& scalars) {
+  Domain domain;
+  domain.count = static_cast<int>(table.variables.size());
+  domain.entries.reserve(4 * table.entries.size());
+  for (const OpticalPoint& entry : table.entries)
+    for (const double part : {entry.extinction, entry.color[0], entry.color[1], entry.color[2]})
+      domain.entries.push_back(static_cast<float>(part));
+  std::size_t stride = 1, arrays = 0;
+  for (std::size_t i = 0; i < table.variables.size(); ++i) {
+    const Variable& variable = table.variables[i];
+    DomainAxis& axis = domain.axes[i];
+    switch (variable.kind) {
+      case VariableKind::kValue:
+        axis = make_axis(DomainAxis::Source::kScalar, scalars.scalar, *variable.range, table.sizes[i]);
+        break;
+      case VariableKind::kGradient:
+        axis = make_axis(DomainAxis::Source::kGradient, {0.0, scalars.gradient_scale}, *variable.range, table.sizes[i]);
+        break;
+      case VariableKind::kArray:
+        if (!others.empty() && arrays >= others.size())
+          throw Error(ErrorCode::kInvalidArgument,
+                      "the function has more arrays than were named: " + std::to_string(others.size()) + " of them");
+        domain.others[i] = require_other(others.empty() ? arrays : others[arrays], scalars);
+        axis =
+            make_axis(DomainAxis::Source::kOther, scalars.others[*domain.others[i]], *variable.range, table.sizes[i]);
+        ++arrays;
+        break;
+    }
+    axis.steepness = find_steepness(domain.entries, stride, table.sizes[i]) * axis.entries_per_scalar;
+    stride *= table.sizes[i];
+  }
+  return domain;
+}
+
+Domain make_color_domain(std::size_t other, const OpticalFunction& colors, const OpticalFunction& function,
+                         const DomainScalars& scalars) {
+  Domain domain;
+  domain.count = 2;
+  domain.others[1] = require_other(other, scalars);
+  const optics::ScalarMap& map = scalars.others[other];
+  domain.colors = optics::build_control_point_table(colors, map);
+  double largest = 0.0;
+  for (const OpticalPoint& point : function.points) largest = std::max(largest, point.extinction);
+  domain.axes[0].steepness = static_cast<float>(find_slopes(function).extinction * scalars.scalar.scale);
+  domain.axes[1].source = DomainAxis::Source::kOther;
+  domain.axes[1].steepness = static_cast<float>(largest * find_slopes(colors).color * map.scale);
+  return domain;
+}
+
+DomainFunction make_domain_function(const Domain& domain, double tolerance, double diagonal) {
+  DomainFunction function;
+  function.count = domain.count;
+  std::copy(domain.axes.begin(), domain.axes.end(), function.axes);
+  if (domain.is_table())
+    function.entries = domain.entries.data();
+  else
+    function.colors = &domain.colors;
+  function.allowed_rate = allowed_rate_of(tolerance, diagonal);
+  function.most_pieces = most_pieces_of(tolerance);
+  return function;
+}
+
+const Kernels::OfDomain& choose_domain_kernels(const Kernels& kernels, const Domain& domain) {
+  if (!domain.is_table()) return kernels.separate_colors;
+  return domain.count == 2 ? kernels.domain_2d : kernels.domain_3d;
+}
+
+void require_domain_settings(const RenderSettings& settings) {
+  const auto fail = [](const std::string& message) { throw Error(ErrorCode::kUnsupported, message); };
+  if (settings.integrator == Integrator::kPre || settings.integrator == Integrator::kPost)
+    fail("functions of several variables are integrated along each segment: integrator '" +
+         name_of(settings.integrator) + "' does not go with them, leave it out");
+  if (settings.samples_per_voxel > 0.0)
+    fail("functions of several variables follow the cells, not a fixed rate: leave out the samples per voxel");
+}
+
+TableOccupancy::TableOccupancy(const Domain& domain, float least) : domain_(domain) {
+  for (int axis = 0; axis < domain.count; ++axis) sizes_[axis] = domain.axes[axis].last + 1;
+  sums_.reserve(domain.entries.size() / 4);
+  for (std::size_t i = 0; i < domain.entries.size(); i += 4) sums_.push_back(domain.entries[i] > least ? 1 : 0);
+  std::size_t stride = 1;
+  for (int axis = 0; axis < domain.count; ++axis) {
+    for (std::size_t i = stride; i < sums_.size(); ++i)
+      if (i / stride % static_cast<std::size_t>(sizes_[axis]) != 0) sums_[i] += sums_[i - stride];
+    stride *= static_cast<std::size_t>(sizes_[axis]);
+  }
+}
+
+std::uint32_t TableOccupancy::count_below(const std::array<std::int32_t, kMostVariables>& end) const {
+  if (std::any_of(end.begin(), end.end(), [](std::int32_t index) { return index == 0; })) return 0;
+  const auto row = static_cast<std::size_t>(sizes_[0]), slice = row * static_cast<std::size_t>(sizes_[1]);
+  return sums_[static_cast<std::size_t>(end[2] - 1) * slice + static_cast<std::size_t>(end[1] - 1) * row +
+               static_cast<std::size_t>(end[0] - 1)];
+}
+
+bool TableOccupancy::is_empty(const std::array<ValueRange, kMostVariables>& ranges) const {
+  std::array<std::int32_t, kMostVariables> begin{}, end{1, 1, 1};
+  for (int i = 0; i < domain_.count; ++i) {
+    const DomainAxis& axis = domain_.axes[i];
+    const auto entry = [&](double scalar) {
+      return std::clamp((scalar - axis.first) * axis.entries_per_scalar, 0.0, static_cast<double>(axis.last));
+    };
+    // A hair more on either side stands for rounding.
+    begin[i] = static_cast<std::int32_t>(std::max(std::floor(entry(ranges[i].min) - 1e-3), 0.0));
+    end[i] = std::min(static_cast<std::int32_t>(std::ceil(entry(ranges[i].max) + 1e-3)), axis.last) + 1;
+  }
+  // Inclusion and exclusion.
+  std::uint32_t count = 0;
+  for (std::size_t corner = 0; corner < std::size_t{1} << kMostVariables; ++corner) {
+    std::array<std::int32_t, kMostVariables> at = end;
+    bool is_added = true;
+    for (std::size_t axis = 0; axis < kMostVariables; ++axis)
+      if (corner >> axis & 1) {
+        at[axis] = begin[axis];
+        is_added = !is_added;
+      }
+    count += is_added ? count_below(at) : 0u - count_below(at);
+  }
+  return count == 0;
+}
+
+}  // namespace tetravox::cpu
