@@ -44,6 +44,10 @@ std::string explain_transparent(const PictureContext& context) {
   if (context.statistics.rays == 0)
     return "the picture is empty: the camera does not see the data (" + format_bounds(bounds_of(context.body)) +
            "); leave the camera out for a view of everything";
+  if (context.scene.multidimensional)
+    return "the picture is empty: no --widget, and nothing opaque of a --table, lies where the data are; leave both "
+           "out "
+           "for widgets made from the data";
   const ValueRange range = scalar_range_of(context.body);
   if (largest_extinction(context.completed.optical_function, range) <= 0.0)
     return "the picture is empty: the transfer function is transparent over the data's range " + format_range(range) +
