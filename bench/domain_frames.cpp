@@ -1,7 +1,7 @@
 /// Times frames by functions of several variables beside those by the transfer function of one, of a mesh or a grid.
 /// Prints one line for each: seconds (median of the repeats), and how many times the frame of one variable.
 ///
-///     domain_frames bluntfin.vtu
+///     domain_frames bluntfin.vtu [TOLERANCE]
 
 #include "tetravox/analysis.h"
 #include "tetravox/error.h"
@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -64,7 +65,7 @@ OpticalTable make_table(const OpticalFunction& function, const ValueRange& value
 }
 
 template <class Prepared>
-void measure(const Prepared& prepared) {
+void measure(const Prepared& prepared, double tolerance) {
   const tetravox::CompletedScene scene = complete_scene({}, prepared);
   const ValueRange gradients = make_gradient_histogram(prepared).gradient_range;
   OpticalFunction colors;
@@ -73,6 +74,7 @@ void measure(const Prepared& prepared) {
                              0.0,
                              {t, 0.5, 1.0 - t}});
   RenderSettings settings;
+  settings.tolerance = tolerance;
   RenderSettings lit = settings;
   lit.lighting.lights.resize(1);
   const auto side = [&](int axis) { return prepared.bounds[axis].max - prepared.bounds[axis].min; };
@@ -101,19 +103,21 @@ void measure(const Prepared& prepared) {
 
 int main(int argc, char** argv) {
   try {
-    if (argc != 2) throw tetravox::Error(tetravox::ErrorCode::kInvalidArgument, "usage: domain_frames FILE");
+    if (argc != 2 && argc != 3)
+      throw tetravox::Error(tetravox::ErrorCode::kInvalidArgument, "usage: domain_frames FILE [TOLERANCE]");
+    const double tolerance = argc == 3 ? std::atof(argv[2]) : RenderSettings().tolerance;
     const tetravox::Dataset dataset = tetravox::read_dataset(argv[1]);
     if (dataset.is_grid()) {
       tetravox::PreparedGrid grid = prepare_grid(dataset.grid);
       grid.others.push_back(prepare_grid(dataset.grid));
-      measure(grid);
+      measure(grid, tolerance);
     } else {
       tetravox::PreparedMesh mesh = prepare_mesh(dataset.mesh);
       mesh.others.resize(1);
       for (const tetravox::Vertex& vertex : mesh.vertices) mesh.others[0].scalars.push_back(vertex.scalar);
       mesh.others[0].offset = mesh.scalar_offset;
       mesh.others[0].scale = mesh.scalar_scale;
-      measure(mesh);
+      measure(mesh, tolerance);
     }
     return 0;
   } catch (const tetravox::Error& error) {

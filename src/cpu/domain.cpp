@@ -117,19 +117,6 @@ Domain make_color_domain(std::size_t other, const OpticalFunction& colors, const
   return domain;
 }
 
-DomainFunction make_domain_function(const Domain& domain, double tolerance, double diagonal) {
-  DomainFunction function;
-  function.count = domain.count;
-  std::copy(domain.axes.begin(), domain.axes.end(), function.axes);
-  if (domain.is_table())
-    function.entries = domain.entries.data();
-  else
-    function.colors = &domain.colors;
-  function.allowed_rate = allowed_rate_of(tolerance, diagonal);
-  function.most_pieces = most_pieces_of(tolerance);
-  return function;
-}
-
 const Kernels::OfDomain& choose_domain_kernels(const Kernels& kernels, const Domain& domain) {
   if (!domain.is_table()) return kernels.separate_colors;
   return domain.count == 2 ? kernels.domain_2d : kernels.domain_3d;
@@ -144,49 +131,71 @@ void require_domain_settings(const RenderSettings& settings) {
     fail("functions of several variables follow the cells, not a fixed rate: leave out the samples per voxel");
 }
 
-TableOccupancy::TableOccupancy(const Domain& domain, float least) : domain_(domain) {
-  for (int axis = 0; axis < domain.count; ++axis) sizes_[axis] = domain.axes[axis].last + 1;
-  sums_.reserve(domain.entries.size() / 4);
-  for (std::size_t i = 0; i < domain.entries.size(); i += 4) sums_.push_back(domain.entries[i] > least ? 1 : 0);
-  std::size_t stride = 1;
-  for (int axis = 0; axis < domain.count; ++axis) {
-    for (std::size_t i = stride; i < sums_.size(); ++i)
-      if (i / stride % static_cast<std::size_t>(sizes_[axis]) != 0) sums_[i] += sums_[i - stride];
-    stride *= static_cast<std::size_t>(sizes_[axis]);
+void build_occupancy(const Domain& domain, double tolerance, double diagonal, TableOccupancy& occupancy) {
+  if (!domain.is_table() || occupancy.tolerance == tolerance) return;
+  const float least = allowed_haze_of(tolerance, diagonal);
+  std::array<std::size_t, kMostVariables> sizes{0, 0, 0};
+  for (int axis = 0; axis < domain.count; ++axis) sizes[axis] = static_cast<std::size_t>(domain.axes[axis].last) + 1;
+  const std::size_t row = sizes[0] + 1, slice = row * (sizes[1] + 1);
+  occupancy.sums.assign(slice * (sizes[2] + 1), 0);
+  // A table of two variables is a single slice; so its sums are.
+  const std::size_t shift = domain.count == 3 ? row + 1 + slice : row + 1;
+  for (std::size_t i = 0; i < domain.entries.size() / 4; ++i) {
+    const std::size_t x = i % sizes[0], y = i / sizes[0] % sizes[1], z = i / sizes[0] / sizes[1];
+    occupancy.sums[z * slice + y * row + x + shift] = domain.entries[4 * i] > least ? 1 : 0;
   }
+  for (const std::size_t stride : {std::size_t{1}, row, slice})
+    for (std::size_t i = stride; i < occupancy.sums.size(); ++i)
+      if (stride == slice || i % (stride == 1 ? row : slice) >= stride) occupancy.sums[i] += occupancy.sums[i - stride];
+  occupancy.tolerance = tolerance;
 }
 
-std::uint32_t TableOccupancy::count_below(const std::array<std::int32_t, kMostVariables>& end) const {
-  if (std::any_of(end.begin(), end.end(), [](std::int32_t index) { return index == 0; })) return 0;
-  const auto row = static_cast<std::size_t>(sizes_[0]), slice = row * static_cast<std::size_t>(sizes_[1]);
-  return sums_[static_cast<std::size_t>(end[2] - 1) * slice + static_cast<std::size_t>(end[1] - 1) * row +
-               static_cast<std::size_t>(end[0] - 1)];
-}
-
-bool TableOccupancy::is_empty(const std::array<ValueRange, kMostVariables>& ranges) const {
-  std::array<std::int32_t, kMostVariables> begin{}, end{1, 1, 1};
-  for (int i = 0; i < domain_.count; ++i) {
-    const DomainAxis& axis = domain_.axes[i];
+bool is_transparent(const Domain& domain, const TableOccupancy& occupancy,
+                    const std::array<ValueRange, kMostVariables>& ranges) {
+  std::array<std::size_t, kMostVariables> begin{}, end{};
+  for (int i = 0; i < domain.count; ++i) {
+    const DomainAxis& axis = domain.axes[i];
     const auto entry = [&](double scalar) {
       return std::clamp((scalar - axis.first) * axis.entries_per_scalar, 0.0, static_cast<double>(axis.last));
     };
     // A hair more on either side stands for rounding.
-    begin[i] = static_cast<std::int32_t>(std::max(std::floor(entry(ranges[i].min) - 1e-3), 0.0));
-    end[i] = std::min(static_cast<std::int32_t>(std::ceil(entry(ranges[i].max) + 1e-3)), axis.last) + 1;
+    begin[i] = static_cast<std::size_t>(std::max(std::floor(entry(ranges[i].min) - 1e-3), 0.0));
+    end[i] = std::min(static_cast<std::size_t>(std::ceil(entry(ranges[i].max) + 1e-3)),
+                      static_cast<std::size_t>(axis.last)) +
+             1;
   }
   // Inclusion and exclusion.
-  std::uint32_t count = 0;
-  for (std::size_t corner = 0; corner < std::size_t{1} << kMostVariables; ++corner) {
-    std::array<std::int32_t, kMostVariables> at = end;
+  std::int32_t count = 0;
+  for (std::size_t corner = 0; corner < std::size_t{1} << domain.count; ++corner) {
+    std::size_t index = 0, stride = 1;
     bool is_added = true;
-    for (std::size_t axis = 0; axis < kMostVariables; ++axis)
-      if (corner >> axis & 1) {
-        at[axis] = begin[axis];
-        is_added = !is_added;
-      }
-    count += is_added ? count_below(at) : 0u - count_below(at);
+    for (int i = 0; i < domain.count; ++i) {
+      const bool is_lower = (corner >> i & 1) != 0;
+      index += (is_lower ? begin[i] : end[i]) * stride;
+      stride *= static_cast<std::size_t>(domain.axes[i].last) + 2;
+      is_added ^= is_lower;
+    }
+    count += is_added ? occupancy.sums[index] : -occupancy.sums[index];
   }
   return count == 0;
+}
+
+DomainFunction make_domain_function(const Domain& domain, const TableOccupancy& occupancy, double tolerance,
+                                    double diagonal) {
+  DomainFunction function;
+  function.count = domain.count;
+  std::copy(domain.axes.begin(), domain.axes.end(), function.axes);
+  for (int axis = 0; axis < domain.count; ++axis)
+    if (domain.axes[axis].source == DomainAxis::Source::kGradient) function.gradient_axis = axis;
+  if (domain.is_table()) {
+    function.entries = domain.entries.data();
+    function.occupied = occupancy.sums.data();
+  } else {
+    function.colors = &domain.colors;
+  }
+  function.allowed_rate = allowed_rate_of(tolerance, diagonal);
+  function.most_pieces = most_pieces_of(tolerance);
+  return function;
 }
 
 }  // namespace tetravox::cpu

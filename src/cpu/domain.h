@@ -46,29 +46,26 @@ Domain make_table_domain(const OpticalTable& table, const std::vector<std::size_
 Domain make_color_domain(std::size_t other, const OpticalFunction& colors, const OpticalFunction& function,
                          const DomainScalars& scalars);
 
-/// For the kernels, at a tolerance. Points into `domain`.
-DomainFunction make_domain_function(const Domain& domain, double tolerance, double diagonal);
-
 const Kernels::OfDomain& choose_domain_kernels(const Kernels& kernels, const Domain& domain);
 
 /// @throws Error (kUnsupported) for settings that do not go with a domain.
 void require_domain_settings(const RenderSettings& settings);
 
 /// How many entries of a table absorb, over any box of them at once (summed-area table; Crow 1984).
-class TableOccupancy {
- public:
-  /// Those count whose extinction is above `least`.
-  TableOccupancy(const Domain& domain, float least);
-
-  /// Whether nothing absorbs where axis i takes stored scalars in `ranges[i]`.
-  bool is_empty(const std::array<ValueRange, kMostVariables>& ranges) const;
-
- private:
-  std::uint32_t count_below(const std::array<std::int32_t, kMostVariables>& end) const;
-
-  const Domain& domain_;
-  std::array<std::int32_t, kMostVariables> sizes_{1, 1, 1};
-  std::vector<std::uint32_t> sums_;  ///< [..] like the entries, of all before them along every axis and themselves
+struct TableOccupancy {
+  double tolerance = 0.0;          ///< that it was made for
+  std::vector<std::int32_t> sums;  ///< see `DomainFunction::occupied`
 };
+
+/// Those count whose extinction is above what counts as none. Made anew for another tolerance.
+void build_occupancy(const Domain& domain, double tolerance, double diagonal, TableOccupancy& occupancy);
+
+/// Whether nothing absorbs where axis i takes stored scalars in `ranges[i]`.
+bool is_transparent(const Domain& domain, const TableOccupancy& occupancy,
+                    const std::array<ValueRange, kMostVariables>& ranges);
+
+/// For the kernels, at a tolerance. Points into `domain` and `occupancy`, which is that of a table.
+DomainFunction make_domain_function(const Domain& domain, const TableOccupancy& occupancy, double tolerance,
+                                    double diagonal);
 
 }  // namespace tetravox::cpu

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <memory>
 #include <utility>
 
 namespace tetravox::cpu {
@@ -24,6 +23,7 @@ DomainScalars GridDomain::scalars() const {
 
 void GridDomain::set(Domain domain) {
   domain_ = std::move(domain);
+  occupancy_ = {};
   others_.clear();
   for (std::size_t axis = 0; axis < domain_.others.size(); ++axis)
     if (domain_.others[axis]) others_.emplace_back(grid_.others[*domain_.others[axis]], axis);
@@ -37,7 +37,8 @@ void GridDomain::set_colors(std::size_t other, const OpticalFunction& colors, co
   set(make_color_domain(other, colors, function, scalars()));
 }
 
-void GridDomain::prepare_filter(const Filter& filter) {
+void GridDomain::prepare(const Filter& filter, double tolerance, double diagonal) {
+  build_occupancy(domain_, tolerance, diagonal, occupancy_);
   for (Other& other : others_)
     if (other.field.kernel ? other.field.filter != filter : wants_kernel(filter))
       other.field = make_filtered_field(*other.grid, filter);
@@ -54,9 +55,8 @@ std::vector<LatticeField> GridDomain::make_fields(const LatticeField& field) con
   return fields;
 }
 
-IsSeen GridDomain::find_seen(double tolerance, double diagonal) const {
-  const auto occupancy = std::make_shared<const TableOccupancy>(domain_, allowed_haze_of(tolerance, diagonal));
-  return [this, occupancy](std::size_t brick, const ValueRange& range) {
+IsSeen GridDomain::find_seen() const {
+  return [this](std::size_t brick, const ValueRange& range) {
     constexpr double kAny = std::numeric_limits<double>::max();
     std::array<ValueRange, kMostVariables> ranges;
     ranges.fill({-kAny, kAny});
@@ -69,7 +69,7 @@ IsSeen GridDomain::find_seen(double tolerance, double diagonal) const {
       ranges[other.axis] = range_of(source, brick);
       if (!(ranges[other.axis].min <= ranges[other.axis].max)) return false;  // missing throughout
     }
-    return !occupancy->is_empty(ranges);
+    return !is_transparent(domain_, occupancy_, ranges);
   };
 }
 
@@ -96,7 +96,7 @@ void GridDomain::fill(const Filling& filling, BrickLattices& lattices, MarchBric
 }
 
 std::uint64_t GridDomain::bytes() const {
-  std::uint64_t bytes = domain_.bytes();
+  std::uint64_t bytes = domain_.bytes() + occupancy_.sums.size() * sizeof(std::int32_t);
   for (const Other& other : others_)
     bytes += (other.field.coefficients.size() + other.field.min.size() + other.field.max.size()) * sizeof(float);
   return bytes;

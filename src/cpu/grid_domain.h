@@ -40,11 +40,16 @@ class GridDomain {
   const Domain& domain() const { return domain_; }
   bool is_set() const { return domain_.is_set(); }
 
-  void prepare_filter(const Filter& filter);
+  /// Makes what frames with these settings need.
+  void prepare(const Filter& filter, double tolerance, double diagonal);
+  /// For the kernels. Points into this.
+  DomainFunction make_function(double tolerance, double diagonal) const {
+    return make_domain_function(domain_, occupancy_, tolerance, diagonal);
+  }
   /// How lattices of the further fields are filled; `field`: how those of the value are.
   std::vector<LatticeField> make_fields(const LatticeField& field) const;
   /// Of a table: whether it absorbs anywhere in what occurs in a brick, whatever the gradient. Views this.
-  IsSeen find_seen(double tolerance, double diagonal) const;
+  IsSeen find_seen() const;
 
   /// What a brick is, and what its lattices are filled from.
   struct Filling {
@@ -78,6 +83,7 @@ class GridDomain {
 
   const PreparedGrid& grid_;
   Domain domain_;
+  TableOccupancy occupancy_;
   std::vector<Other> others_;
 };
 

@@ -323,7 +323,7 @@ ShadowedBody GridRenderer::shadowed_body() const {
 }
 
 void GridRenderer::prepare_filter(const RenderSettings& settings) {
-  domain_.prepare_filter(settings.filter);
+  domain_.prepare(settings.filter, settings.tolerance, diagonal());
   if (field_.kernel ? field_.filter == settings.filter : !wants_kernel(settings.filter)) return;
   is_planned_ = false;
   FilteredField field = make_filtered_field(grid_, settings.filter);
@@ -347,7 +347,7 @@ void GridRenderer::plan(const RenderSettings& settings) {
   std::sort(wanted.surface_values.begin(), wanted.surface_values.end());
   if (is_planned_ && wanted == planned_for_) return;
   PlanSources sources = plan_sources(settings);
-  if (domain_.domain().is_table()) sources.is_seen = domain_.find_seen(settings.tolerance, diagonal());
+  if (domain_.domain().is_table()) sources.is_seen = domain_.find_seen();
   plans_ = plan_bricks(sources, wanted);
   visible_.clear();
   for (std::size_t i = 0; i < plans_.size(); ++i)
@@ -499,7 +499,7 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
                           field_.kernel != nullptr};
   FrameParts frame;
   tables.effects = &frame.illustration.effects;
-  const DomainFunction domain = make_domain_function(domain_.domain(), settings.tolerance, diagonal());
+  const DomainFunction domain = domain_.make_function(settings.tolerance, diagonal());
   tables.domain = &domain;
   frame.view = make_grid_view(drawn(), frame_, pass.camera, settings.width, settings.height);
   frame.rays = make_rays(frame.view.camera, frame.view.world_per_local);

@@ -127,6 +127,7 @@ class MeshRenderer final : public FrameRenderer {
 
   void set_table(const OpticalTable& table, const std::vector<std::size_t>& others) override {
     domain_ = make_table_domain(table, others, scalars());
+    occupancy_ = {};
     ++function_number_;
   }
   void set_colors(std::size_t other, const OpticalFunction& colors) override {
@@ -145,7 +146,8 @@ class MeshRenderer final : public FrameRenderer {
   std::uint64_t bytes() const override {
     return (vertices_ ? mesh_.vertices.size() * 4 * sizeof(float) : 0) + frame_bytes_ + antiderivative_.bytes() +
            control_points_.bytes() + gradients_.records.size() * sizeof(mesh::Gradient) +
-           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes();
+           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() +
+           occupancy_.sums.size() * sizeof(std::int32_t);
   }
 
   Source source() const override { return Source::kWalk; }
@@ -164,6 +166,7 @@ class MeshRenderer final : public FrameRenderer {
   const PreparedMesh& mesh_;
   OpticalFunction function_;
   Domain domain_;
+  TableOccupancy occupancy_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
   bool has_centroids_ = false;
@@ -280,7 +283,8 @@ void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
                           settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,
                           static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, settings.samples};
   tables.effects = &illustration.effects;
-  const DomainFunction domain = make_domain_function(domain_, settings.tolerance, diagonal());
+  build_occupancy(domain_, settings.tolerance, diagonal(), occupancy_);
+  const DomainFunction domain = make_domain_function(domain_, occupancy_, settings.tolerance, diagonal());
   tables.domain = &domain;
   const auto walk = choose_kernel(kernels, settings, pass.has_effects);
   const ClipScene clip = make_clip_scene(settings.clipping, context.clip_volumes,

@@ -8,6 +8,7 @@
 #endif
 
 #include "src/cpu/kernels/domain.h"
+#include "src/cpu/kernels/domain_functions-inl.h"
 #include "src/cpu/kernels/effects.h"
 #include "src/cpu/kernels/integrators-inl.h"
 #include "src/cpu/kernels/kernels.h"
@@ -18,153 +19,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
-
-/// The straight way of a vector of rays through the domain, u from 0 to 1.
-template <int kCount>
-struct DomainPath {
-  Float begin[kCount], span[kCount];
-
-  HWY_INLINE Float at(int axis, Float u) const { return multiply_add(u, span[axis], begin[axis]); }
-  /// Where it meets `value`; never where it does not move.
-  HWY_INLINE Float meets(int axis, Float value) const {
-    const Mask level = hn::Eq(span[axis], constant(0.0f));
-    const Float u = hn::Div(hn::Sub(value, begin[axis]), hn::IfThenElse(level, constant(1.0f), span[axis]));
-    return hn::IfThenElse(level, constant(2.0f), u);
-  }
-};
-
-/// Extinction and colour of a table, multilinear between its entries. Paths are in entries.
-template <int kVariables>
-class TableFunction {
- public:
-  static constexpr int kCount = kVariables;
-  using Path = DomainPath<kCount>;
-
-  explicit TableFunction(const IntegratorTables& tables) : domain_(*tables.domain) {
-    std::int32_t stride = 1;
-    for (int axis = 0; axis < kCount; ++axis) {
-      strides_[axis] = stride;
-      stride *= domain_.axes[axis].last + 1;
-    }
-  }
-
-  HWY_INLINE Float coordinate(int axis, Float scalar) const {
-    const DomainAxis& a = domain_.axes[axis];
-    return hn::Mul(hn::Sub(scalar, constant(a.first)), constant(a.entries_per_scalar));
-  }
-
-  /// The box between entries that a path is in: the number of its lower entry along each axis, -1 below the table, the
-  /// last one above it.
-  struct Box {
-    Float number[kCount];
-  };
-  HWY_INLINE Box start(const Path& path) const {
-    Box box;
-    for (int axis = 0; axis < kCount; ++axis) {
-      const Float at = hn::Min(hn::Max(path.begin[axis], constant(-1.0f)), last(axis)), floor = hn::Floor(at);
-      // A path that falls from an entry is in the box below.
-      const Mask falls = hn::And(hn::Lt(path.span[axis], constant(0.0f)), hn::Eq(floor, path.begin[axis]));
-      box.number[axis] = hn::IfThenElse(falls, hn::Sub(floor, constant(1.0f)), floor);
-    }
-    return box;
-  }
-  /// Where the path leaves its box along an axis.
-  HWY_INLINE Float border(const Path& path, const Box& box, int axis) const {
-    const Mask rising = hn::Gt(path.span[axis], constant(0.0f));
-    const Float value = hn::IfThenElse(rising, hn::Add(box.number[axis], constant(1.0f)), box.number[axis]);
-    const Mask outside = hn::Or(hn::Lt(value, constant(0.0f)), hn::Gt(value, last(axis)));
-    return hn::IfThenElse(outside, constant(2.0f), path.meets(axis, value));
-  }
-  HWY_INLINE void cross(const Path& path, Mask lanes, int axis, Box& box) const {
-    const Float step = hn::CopySign(constant(1.0f), path.span[axis]);
-    box.number[axis] = hn::Add(box.number[axis], hn::IfThenElseZero(lanes, step));
-  }
-
-  /// What is to be known of a box to evaluate the function in it.
-  struct Corners {
-    Float number[kCount];
-    Record entries[1 << kCount];
-  };
-  HWY_INLINE Corners load(const Box& box) const {
-    Corners corners;
-    Float node = constant(0.0f);
-    for (int axis = 0; axis < kCount; ++axis) {
-      corners.number[axis] = hn::Min(hn::Max(box.number[axis], constant(0.0f)), hn::Sub(last(axis), constant(1.0f)));
-      node = multiply_add(corners.number[axis], constant(static_cast<float>(strides_[axis])), node);
-    }
-    const Uint index = hn::BitCast(kUint, hn::ConvertTo(kInt, node));
-    for (int corner = 0; corner < 1 << kCount; ++corner) {
-      std::int32_t offset = 0;
-      for (int axis = 0; axis < kCount; ++axis) offset += (corner >> axis & 1) * strides_[axis];
-      corners.entries[corner] =
-          load_table_records(domain_.entries, hn::Add(index, hn::Set(kUint, static_cast<std::uint32_t>(offset))));
-    }
-    return corners;
-  }
-  HWY_INLINE Record eval(const Path& path, const Corners& corners, Float u) const {
-    Record mixed[1 << (kCount - 1)];
-    for (int axis = 0; axis < kCount; ++axis) {
-      const Float off = hn::Sub(path.at(axis, u), corners.number[axis]);
-      const Float t = hn::Min(hn::Max(off, constant(0.0f)), constant(1.0f));
-      const Record* from = axis == 0 ? corners.entries : mixed;
-      for (int i = 0; i < 1 << (kCount - 1 - axis); ++i) mixed[i] = mix_records(t, from[2 * i], from[2 * i + 1]);
-    }
-    return mixed[0];
-  }
-
- private:
-  static HWY_INLINE Record mix_records(Float t, const Record& a, const Record& b) {
-    const auto channel = [&](Float p, Float q) { return multiply_add(t, hn::Sub(q, p), p); };
-    return {channel(a.x, b.x), channel(a.y, b.y), channel(a.z, b.z), channel(a.w, b.w)};
-  }
-  HWY_INLINE Float last(int axis) const { return constant(static_cast<float>(domain_.axes[axis].last)); }
-
-  const DomainFunction& domain_;
-  std::int32_t strides_[kCount];
-};
-
-/// Extinction by the scalar, colour by another: both linear between their control points. Paths are in stored scalars.
-class SeparateFunction {
- public:
-  static constexpr int kCount = 2;
-  using Path = DomainPath<kCount>;
-
-  explicit SeparateFunction(const IntegratorTables& tables)
-      : points_{ControlPoints(*tables.control_points), ControlPoints(*tables.domain->colors)} {}
-
-  HWY_INLINE Float coordinate(int, Float scalar) const { return scalar; }
-
-  /// The intervals between control points that a path is in.
-  struct Box {
-    Int interval[kCount];
-  };
-  using Corners = Box;
-  HWY_INLINE Box start(const Path& path) const {
-    Box box;
-    for (int axis = 0; axis < kCount; ++axis)
-      box.interval[axis] = points_[axis].find_front_interval(path.begin[axis], hn::Ge(path.span[axis], constant(0.0f)));
-    return box;
-  }
-  HWY_INLINE Float border(const Path& path, const Box& box, int axis) const {
-    const Mask rising = hn::Ge(path.span[axis], constant(0.0f));
-    const Int side = hn::IfThenElseZero(int_mask(rising), hn::Set(kInt, 1));
-    return path.meets(axis, points_[axis].start_of(hn::Add(box.interval[axis], side)));
-  }
-  HWY_INLINE void cross(const Path& path, Mask lanes, int axis, Box& box) const {
-    const Mask rising = hn::Ge(path.span[axis], constant(0.0f));
-    const Int step = hn::IfThenElse(int_mask(rising), hn::Set(kInt, 1), hn::Set(kInt, -1));
-    box.interval[axis] = hn::Add(box.interval[axis], hn::IfThenElseZero(int_mask(lanes), step));
-  }
-  HWY_INLINE Corners load(const Box& box) const { return box; }
-  HWY_INLINE Record eval(const Path& path, const Corners& box, Float u) const {
-    const Float extinction = points_[0].eval(box.interval[0], path.at(0, u)).x;
-    const Record color = points_[1].eval(box.interval[1], path.at(1, u));
-    return {extinction, color.y, color.z, color.w};
-  }
-
- private:
-  ControlPoints points_[kCount];
-};
 
 /// A part of a path on which extinction and colour are polynomials, known where it begins, in its middle and where it
 /// ends.
@@ -234,51 +88,40 @@ class DomainIntegrator : public WithoutFront {
         effects_(*tables.effects),
         threshold_(kErrorOfSlope * tables.tolerance) {}
 
-  /// Linear pieces that the part of a stretch between two cuts needs for what is bent in it.
-  template <class Stretch>
-  HWY_INLINE Float count_pieces(const Stretch& stretch, const Cut& begin, const Cut& end, Float transmittance) const {
-    Float rate = constant(0.0f);
-    const Float part = hn::Sub(end.u, begin.u), square = hn::Mul(part, part);
-    for (int axis = 0; axis < kCount; ++axis) {
-      const DomainAxis& a = domain_.axes[axis];
-      if (a.steepness == 0.0f) continue;
-      Float bend = constant(0.0f);
-      if (a.source == DomainAxis::Source::kGradient)
-        bend = find_bend_of_magnitude(stretch, begin, end);
-      else if constexpr (!Stretch::kIsLinear)
-        bend = hn::Mul(square, a.source == DomainAxis::Source::kScalar ? stretch.bend() : stretch.other_bend(axis));
-      bend = hn::IfThenElseZero(hn::Eq(bend, bend), bend);  // of missing values nothing is drawn
-      rate = multiply_add(bend, constant(a.steepness), rate);
+  /// Adds the part of a stretch between two cuts in linear pieces. `find_length(a, b)`: world length of the piece
+  /// between two cuts; `note(a, b, before)`: told of each piece, with the transmittance before it. `moment`: where
+  /// there is one, what is absorbed times where (as u of the stretch) is added to it.
+  template <class Stretch, class FindLength, class Note>
+  HWY_NOINLINE void integrate_stretch(const Stretch& stretch, const Cut& begin, const Cut& end, Accumulated& sum,
+                                      Float* moment, const FindLength& find_length, const Note& note) const {
+    Place at = place_at(stretch, begin), last_place = place_at(stretch, end);
+    const Mask seen = hn::And(hn::Gt(stretch.length, constant(0.0f)), is_occupied(stretch, at, last_place));
+    if (hn::AllFalse(kFloat, seen)) return note(begin, end, sum.transmittance);
+    add_gradient(stretch, begin, at);
+    add_gradient(stretch, end, last_place);
+    const Float one = constant(1.0f);
+    const Float pieces =
+        hn::IfThenElse(seen, count_pieces(stretch, {begin, end, at, last_place}, sum.transmittance), one);
+    const Float share = hn::Div(hn::Sub(end.u, begin.u), pieces);
+    Cut cut = begin;
+    for (Float number = one;; number = hn::Add(number, one)) {
+      const Mask last = hn::Ge(number, pieces);
+      Cut next = end;
+      Place next_place = last_place;
+      if (!hn::AllTrue(kFloat, last)) {
+        next = cut_at(stretch, multiply_add(number, share, begin.u));
+        next = {hn::IfThenElse(last, end.u, next.u), hn::IfThenElse(last, end.scalar, next.scalar)};
+        next_place = place_at(stretch, next);
+        add_gradient(stretch, next, next_place);
+      }
+      const Float before = sum.transmittance;
+      const Piece piece{cut, next, at, next_place};
+      integrate_piece(piece, hn::IfThenElseZero(seen, find_length(cut, next)), sum, moment);
+      note(cut, next, before);
+      if (hn::AllTrue(kFloat, last)) return;
+      cut = next;
+      at = next_place;
     }
-    const Float wanted =
-        hn::Ceil(hn::Sqrt(hn::Mul(hn::Mul(rate, transmittance), constant(1.0f / domain_.allowed_rate))));
-    const Float pieces = hn::Min(hn::Max(wanted, constant(1.0f)), constant(domain_.most_pieces));
-    return hn::IfThenElse(hn::Gt(stretch.length, constant(0.0f)), pieces, constant(1.0f));
-  }
-
-  /// Adds the piece of a stretch between two cuts; `length` its world length. `moment`: where there is one, what the
-  /// piece absorbs times where (as u of the stretch) is added to it.
-  template <class Stretch>
-  HWY_NOINLINE void integrate_piece(const Stretch& stretch, const Cut& a, const Cut& b, Float length, Accumulated& sum,
-                                    Float* moment) const {
-    DomainPath<kCount> path;
-    Mask active = hn::Gt(length, constant(0.0f));
-    for (int axis = 0; axis < kCount; ++axis) {
-      const Float front = function_.coordinate(axis, scalar_at(stretch, a, axis));
-      const Float back = function_.coordinate(axis, scalar_at(stretch, b, axis));
-      // What is missing is transparent.
-      const Mask present = hn::And(hn::Eq(front, front), hn::Eq(back, back));
-      active = hn::And(active, present);
-      path.begin[axis] = hn::IfThenElseZero(present, front);
-      path.span[axis] = hn::IfThenElseZero(present, hn::Sub(back, front));
-    }
-    if (hn::AllFalse(kFloat, active)) return;
-    const Float part = hn::Sub(b.u, a.u);
-    follow(path, length, active, sum, [&](Float from, Float to, const DomainPart& piece, Float absorbed) {
-      if (!moment) return;
-      const Float place = multiply_add(multiply_add(piece.centroid(), hn::Sub(to, from), from), part, a.u);
-      *moment = multiply_add(absorbed, place, *moment);
-    });
   }
 
  private:
@@ -288,27 +131,126 @@ class DomainIntegrator : public WithoutFront {
   /// The series of `composite_part` is good up to this optical depth.
   static constexpr float kDeepest = 1.0f;
   static constexpr float kShortest = 1e-6f;
+  static constexpr float kLeftOver = 1e-6f;
 
+  /// Where a place of a stretch lies in the domain.
+  struct Place {
+    Float coordinates[kCount];
+    Triple gradient;
+  };
+  struct Piece {
+    const Cut &a, &b;
+    const Place &front, &back;
+  };
+
+  /// All but the gradient.
   template <class Stretch>
-  HWY_INLINE Float scalar_at(const Stretch& stretch, const Cut& cut, int axis) const {
-    switch (domain_.axes[axis].source) {
-      case DomainAxis::Source::kGradient:
-        return magnitude_at(effects_, stretch, cut.u);
-      case DomainAxis::Source::kOther:
-        return stretch.other(axis, cut.u);
-      case DomainAxis::Source::kScalar:
-        break;
+  HWY_INLINE Place place_at(const Stretch& stretch, const Cut& cut) const {
+    const Float zero = constant(0.0f);
+    Place place;
+    place.gradient = {zero, zero, zero};
+    for (int axis = 0; axis < kCount; ++axis) {
+      const DomainAxis::Source source = domain_.axes[axis].source;
+      Float scalar = cut.scalar;
+      if (source == DomainAxis::Source::kOther) scalar = stretch.other(axis, cut.u);
+      place.coordinates[axis] = source == DomainAxis::Source::kGradient ? zero : function_.coordinate(axis, scalar);
     }
-    return cut.scalar;
+    return place;
   }
 
-  /// How far the gradient magnitude strays from its chord: it is convex where gradients are linear.
   template <class Stretch>
-  HWY_NOINLINE Float find_bend_of_magnitude(const Stretch& stretch, const Cut& begin, const Cut& end) const {
+  HWY_INLINE void add_gradient(const Stretch& stretch, const Cut& cut, Place& place) const {
+    if (domain_.gradient_axis < 0) return;
+    place.gradient = gradient_at(effects_, stretch, cut.u);
+    const Float magnitude = function_.coordinate(domain_.gradient_axis, magnitude_of(place.gradient));
+    for (int axis = 0; axis < kCount; ++axis)
+      if (axis == domain_.gradient_axis) place.coordinates[axis] = magnitude;
+  }
+
+  static HWY_INLINE Float magnitude_of(const Triple& gradient) { return hn::Sqrt(dot(gradient, gradient)); }
+
+  /// Distance of what an axis is given from its chord, along the whole stretch.
+  template <class Stretch>
+  static HWY_INLINE Float bend_of(const Stretch& stretch, DomainAxis::Source source, int axis) {
+    if constexpr (Stretch::kIsLinear)
+      return constant(0.0f);
+    else
+      return source == DomainAxis::Source::kScalar ? stretch.bend() : stretch.other_bend(axis);
+  }
+
+  /// Whether the function absorbs anywhere near what the stretch passes, whatever the gradient.
+  template <class Stretch>
+  HWY_INLINE Mask is_occupied(const Stretch& stretch, const Place& a, const Place& b) const {
+    Float low[kCount], high[kCount];
+    const auto present = [](Float x) { return hn::IfThenElseZero(hn::Eq(x, x), x); };
+    for (int axis = 0; axis < kCount; ++axis) {
+      const DomainAxis& of = domain_.axes[axis];
+      low[axis] = hn::Min(present(a.coordinates[axis]), present(b.coordinates[axis]));
+      high[axis] = hn::Max(present(a.coordinates[axis]), present(b.coordinates[axis]));
+      if (of.source == DomainAxis::Source::kGradient) {
+        high[axis] = constant(static_cast<float>(of.last));
+      } else if constexpr (!Stretch::kIsLinear) {
+        const Float margin =
+            hn::Mul(constant(1.5f * of.entries_per_scalar), present(bend_of(stretch, of.source, axis)));
+        low[axis] = hn::Sub(low[axis], margin);
+        high[axis] = hn::Add(high[axis], margin);
+      }
+    }
+    return function_.is_occupied(low, high);
+  }
+
+  /// Linear pieces that a stretch needs for what is bent in it.
+  template <class Stretch>
+  HWY_INLINE Float count_pieces(const Stretch& stretch, const Piece& whole, Float transmittance) const {
+    const Float part = hn::Sub(whole.b.u, whole.a.u), square = hn::Mul(part, part);
+    Float rate = constant(0.0f);
+    for (int axis = 0; axis < kCount; ++axis) {
+      const DomainAxis& of = domain_.axes[axis];
+      if (of.steepness == 0.0f) continue;
+      Float bend = of.source == DomainAxis::Source::kGradient ? bend_of_magnitude(stretch, whole)
+                                                              : hn::Mul(square, bend_of(stretch, of.source, axis));
+      bend = hn::IfThenElseZero(hn::Eq(bend, bend), bend);  // of missing values nothing is drawn
+      rate = multiply_add(bend, constant(of.steepness), rate);
+    }
+    const Float error = hn::Mul(hn::Mul(rate, transmittance), constant(1.0f / domain_.allowed_rate));
+    return hn::Min(hn::Max(hn::Ceil(hn::Sqrt(error)), constant(1.0f)), constant(domain_.most_pieces));
+  }
+
+  /// How far the gradient magnitude strays from its chord. Where the gradient is linear, it is convex.
+  template <class Stretch>
+  HWY_INLINE Float bend_of_magnitude(const Stretch& stretch, const Piece& whole) const {
     const Float half = constant(0.5f);
-    const Float chord =
-        hn::Mul(half, hn::Add(magnitude_at(effects_, stretch, begin.u), magnitude_at(effects_, stretch, end.u)));
-    return hn::AbsDiff(chord, magnitude_at(effects_, stretch, hn::Mul(half, hn::Add(begin.u, end.u))));
+    const Triple &a = whole.front.gradient, &b = whole.back.gradient;
+    const Float chord = hn::Mul(half, hn::Add(magnitude_of(a), magnitude_of(b)));
+    Triple middle = scaled(sum_of(a, b), half);
+    if constexpr (!Stretch::kIsLinear)
+      middle = gradient_at(effects_, stretch, hn::Mul(half, hn::Add(whole.a.u, whole.b.u)));
+    return hn::AbsDiff(chord, magnitude_of(middle));
+  }
+
+  HWY_INLINE void integrate_piece(const Piece& piece, Float length, Accumulated& sum, Float* moment) const {
+    DomainPath<kCount> path;
+    Mask active = hn::Gt(length, constant(0.0f));
+    for (int axis = 0; axis < kCount; ++axis) {
+      const Float front = piece.front.coordinates[axis], back = piece.back.coordinates[axis];
+      // What is missing is transparent.
+      const Mask present = hn::And(hn::Eq(front, front), hn::Eq(back, back));
+      active = hn::And(active, present);
+      path.begin[axis] = hn::IfThenElseZero(present, front);
+      path.span[axis] = hn::IfThenElseZero(present, hn::Sub(back, front));
+    }
+    if (hn::AllFalse(kFloat, active)) return;
+    const Float share = hn::Sub(piece.b.u, piece.a.u);
+    follow(path, length, active, sum, [&](Float from, Float to, const DomainPart& part, Float absorbed) {
+      if (!moment) return;
+      const Float place = multiply_add(multiply_add(part.centroid(), hn::Sub(to, from), from), share, piece.a.u);
+      *moment = multiply_add(absorbed, place, *moment);
+    });
+  }
+
+  static HWY_INLINE Record choose(Mask mask, const Record& a, const Record& b) {
+    return {hn::IfThenElse(mask, a.x, b.x), hn::IfThenElse(mask, a.y, b.y), hn::IfThenElse(mask, a.z, b.z),
+            hn::IfThenElse(mask, a.w, b.w)};
   }
 
   /// Calls `note(from, to, part, absorbed)` for each part that is added.
@@ -318,6 +260,7 @@ class DomainIntegrator : public WithoutFront {
     const Float zero = constant(0.0f), one = constant(1.0f), half = constant(0.5f);
     typename Function::Box box = function_.start(path);
     Float at = zero, step = one;
+    Record front = function_.eval(path, function_.load(box), at);
     do {
       Float borders[kCount], border = one;
       for (int axis = 0; axis < kCount; ++axis) {
@@ -326,8 +269,8 @@ class DomainIntegrator : public WithoutFront {
       }
       const Float next = hn::Min(border, hn::Add(at, step));
       const typename Function::Corners corners = function_.load(box);
-      const DomainPart part{function_.eval(path, corners, at),
-                            function_.eval(path, corners, hn::Mul(half, hn::Add(at, next))),
+      if constexpr (!Function::kIsContinuous) front = function_.eval(path, corners, at);
+      const DomainPart part{front, function_.eval(path, corners, hn::Mul(half, hn::Add(at, next))),
                             function_.eval(path, corners, next), hn::Mul(length, hn::Sub(next, at))};
       const Float depth = part.depth();
       const Float error = hn::Mul(hn::Mul(hn::Mul(depth, depth), part.color_change()), sum.transmittance);
@@ -345,12 +288,11 @@ class DomainIntegrator : public WithoutFront {
         function_.cross(path, hn::And(accepted, hn::Le(borders[axis], next)), axis, box);
       step = hn::IfThenElse(accepted, hn::Add(step, step), hn::Mul(half, hn::Sub(next, at)));
       at = hn::IfThenElse(accepted, next, at);
+      if constexpr (Function::kIsContinuous) front = choose(accepted, part.back, front);
       // What comes after a millionth of the light has no colour to add.
       active = hn::And(active, hn::And(hn::Lt(at, one), hn::Gt(sum.transmittance, constant(kLeftOver))));
     } while (!hn::AllFalse(kFloat, active));
   }
-
-  static constexpr float kLeftOver = 1e-6f;
 
   Function function_;
   const DomainFunction& domain_;

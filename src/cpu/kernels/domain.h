@@ -29,7 +29,10 @@ struct DomainAxis {
 struct DomainFunction {
   int count = 0;  ///< of axes
   DomainAxis axes[kMostVariables];
+  int gradient_axis = -1;          ///< -1: none
   const float* entries = nullptr;  ///< [..][4] extinction a world length, red, green, blue; first axis fastest
+  /// [..], one more than entries along each axis: how many absorb of those below (summed-area table; Crow 1984).
+  const std::int32_t* occupied = nullptr;
   const optics::ControlPointTable* colors = nullptr;
   float allowed_rate = 0.0f;  ///< error in colour for one unit of world length that pieces may have
   float most_pieces = 12.0f;  ///< that what is bent is cut into

@@ -235,14 +235,16 @@ class EffectIntegrator {
   template <class Stretch>
   HWY_NOINLINE void integrate_pieces(const Walk<Stretch>& walk, const Cut& begin, const Cut& end, Accumulated& sum,
                                      Emission* emission) const {
-    if constexpr (Stretch::kIsLinear && !kIsOfDomain) {
+    if constexpr (kIsOfDomain) {
+      if (emission) emission->is_single = hn::FirstN(kFloat, 0);  // the moment says it all
+      base_.integrate_stretch(
+          walk.stretch, begin, end, sum, emission ? &emission->moment : nullptr,
+          [&](const Cut& a, const Cut& b) { return segment_between(walk.stretch, a, b).length; },
+          [&](const Cut& a, const Cut& b, Float before) { note_piece(walk, a, b, before, sum.transmittance); });
+    } else if constexpr (Stretch::kIsLinear) {
       integrate_piece(walk, begin, end, sum, emission);
     } else {
-      Float pieces;
-      if constexpr (kIsOfDomain)
-        pieces = base_.count_pieces(walk.stretch, begin, end, sum.transmittance);
-      else
-        pieces = walk.stretch.count_pieces(begin, end, sum.transmittance);
+      const Float pieces = walk.stretch.count_pieces(begin, end, sum.transmittance);
       const Float share = hn::Div(hn::Sub(end.u, begin.u), pieces);
       if (emission) emission->is_single = hn::Le(pieces, constant(1.0f));
       Cut at = begin;
@@ -264,18 +266,11 @@ class EffectIntegrator {
   template <class Stretch>
   HWY_INLINE void integrate_piece(const Walk<Stretch>& walk, const Cut& a, const Cut& b, Accumulated& sum,
                                   Emission* emission) const {
-    const Stretch& stretch = walk.stretch;
     const Float before = sum.transmittance;
-    const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
-    Segments segment{a.scalar, b.scalar, hn::Mul(stretch.length, part)};
-    if (HWY_UNLIKELY(is_weighted())) weigh(stretch, a, b, segment);
-    if constexpr (kIsOfDomain) {
-      base_.integrate_piece(stretch, a, b, segment.length, sum, emission ? &emission->moment : nullptr);
-      if (emission) emission->is_single = hn::FirstN(kFloat, 0);  // the moment says it all
-    } else {
-      base_.integrate(segment, walk.front, sum);
-    }
-    if (!kIsOfDomain && emission) {
+    const Segments segment = segment_between(walk.stretch, a, b);
+    base_.integrate(segment, walk.front, sum);
+    if (emission) {
+      const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
       const Float absorbed = hn::Sub(before, sum.transmittance);
       const Mask wants_place = hn::And(emission->is_single, hn::Gt(absorbed, constant(effects_.faint)));
       Float place = constant(0.5f);
@@ -285,14 +280,28 @@ class EffectIntegrator {
       emission->moment = multiply_add(absorbed, place, emission->moment);
       emission->place = hn::IfThenElse(hn::Gt(part, constant(0.0f)), place, emission->place);
     }
-    if (effects_.depth) note_depth(walk, a, b, before, sum.transmittance);
-    if (HWY_UNLIKELY(effects_.record != nullptr)) {
-      const Mask takes_part = hn::Gt(stretch.length, constant(0.0f));
-      const Float z_begin = depth_at(stretch, a.u);
-      const Float z[2] = {z_begin, hn::IfThenElse(takes_part, depth_at(stretch, b.u), z_begin)};
-      const Float ends[2] = {before, sum.transmittance};
-      record_depths(*effects_.record, walk.ray.pixels, z, ends);
-    }
+    note_piece(walk, a, b, before, sum.transmittance);
+  }
+
+  /// The piece of a stretch between two cuts, weighed.
+  template <class Stretch>
+  HWY_INLINE Segments segment_between(const Stretch& stretch, const Cut& a, const Cut& b) const {
+    const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
+    Segments segment{a.scalar, b.scalar, hn::Mul(stretch.length, part)};
+    if (HWY_UNLIKELY(is_weighted())) weigh(stretch, a, b, segment);
+    return segment;
+  }
+
+  /// Writes down what depths ask for of a piece: transmittance before and after it.
+  template <class Stretch>
+  HWY_INLINE void note_piece(const Walk<Stretch>& walk, const Cut& a, const Cut& b, Float before, Float after) const {
+    if (effects_.depth) note_depth(walk.stretch, a, b, before, after, walk.depth);
+    if (HWY_LIKELY(effects_.record == nullptr)) return;
+    const Mask takes_part = hn::Gt(walk.stretch.length, constant(0.0f));
+    const Float z_begin = depth_at(walk.stretch, a.u);
+    const Float z[2] = {z_begin, hn::IfThenElse(takes_part, depth_at(walk.stretch, b.u), z_begin)};
+    const Float ends[2] = {before, after};
+    record_depths(*effects_.record, walk.ray.pixels, z, ends);
   }
 
   HWY_INLINE bool is_weighted() const { return effects_.weight_by_change > 0.0f || effects_.weight_by_gradient > 0.0f; }
@@ -314,20 +323,6 @@ class EffectIntegrator {
   }
 
   HWY_INLINE static Float middle_of(const Cut& a, const Cut& b) { return hn::Mul(constant(0.5f), hn::Add(a.u, b.u)); }
-
-  /// Where opacity passes one half.
-  template <class Stretch>
-  HWY_INLINE void note_depth(const Walk<Stretch>& walk, const Cut& a, const Cut& b, Float before, Float after) const {
-    const Float half = constant(0.5f);
-    const Mask open = hn::Eq(walk.depth, constant(std::numeric_limits<float>::infinity()));
-    const Mask passes = hn::And(open, hn::And(hn::Ge(before, half), hn::Lt(after, half)));
-    if (HWY_LIKELY(hn::AllFalse(kFloat, passes))) return;
-    const auto log = [](Float x) { return log2_positive(hn::Max(x, constant(1e-30f))); };
-    const Float span = hn::Max(hn::Sub(log(before), log(after)), constant(1e-12f));
-    const Float t = hn::Min(hn::Div(hn::Add(log(before), constant(1.0f)), span), constant(1.0f));
-    const Float u = multiply_add(t, hn::Sub(b.u, a.u), a.u);
-    walk.depth = hn::IfThenElse(passes, depth_at(walk.stretch, u), walk.depth);
-  }
 
   // ---- light ----
 

@@ -24,6 +24,7 @@
 #include "src/cpu/kernels/vector_math-inl.h"
 
 #include <cmath>
+#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
@@ -71,6 +72,22 @@ template <class Stretch>
 HWY_INLINE Float magnitude_at(const Effects& effects, const Stretch& stretch, Float u) {
   const Triple gradient = gradient_at(effects, stretch, u);
   return hn::Sqrt(dot(gradient, gradient));
+}
+
+/// Writes down where opacity passes one half between two cuts, with these transmittances there, if that is not known
+/// yet.
+template <class Stretch>
+HWY_INLINE void note_depth(const Stretch& stretch, const Cut& a, const Cut& b, Float before, Float after,
+                           Float& depth) {
+  const Float half = constant(0.5f);
+  const Mask open = hn::Eq(depth, constant(std::numeric_limits<float>::infinity()));
+  const Mask passes = hn::And(open, hn::And(hn::Ge(before, half), hn::Lt(after, half)));
+  if (HWY_LIKELY(hn::AllFalse(kFloat, passes))) return;
+  const auto log = [](Float x) { return log2_positive(hn::Max(x, constant(1e-30f))); };
+  const Float span = hn::Max(hn::Sub(log(before), log(after)), constant(1e-12f));
+  const Float t = hn::Min(hn::Div(hn::Add(log(before), constant(1.0f)), span), constant(1.0f));
+  const Float u = multiply_add(t, hn::Sub(b.u, a.u), a.u);
+  depth = hn::IfThenElse(passes, depth_at(stretch, u), depth);
 }
 
 /// Writes down optical depths at the slices between two depths.
