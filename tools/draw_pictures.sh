@@ -24,6 +24,7 @@ white='0.85,0.8,0.7'
 # Of docs/methods/multidimensional.md: each on a mesh and on a grid.
 duct="builtin:duct?cells=300000 --array pressure --resolution 300,300 $above 33"
 bands='--transfer-function coolwarm:peaks=15 --range -1.2,0.548'
+skins='--variables gradient --widget triangle:0.62,4:0.15,4:1,0.6,0.2:0.6 --widget triangle:0.35,4:0.15,4:0.2,0.5,1:0.3'
 wave="builtin:hydrogen?size=64&type=float32 --resolution 300,300 $atom 19"
 
 # Each line: set, picture, what `tetravox render` is given (or `tetravox histogram`, where that word comes first).
@@ -43,7 +44,7 @@ gallery  hydrogen          builtin:hydrogen?size=64&type=float32 --transfer-func
 gallery  marschner-lobb    builtin:marschner-lobb?size=96 --filter bspline-interpolating --transfer-function plasma:peaks=1 --range 0,1 --unit-distance 0.006 --camera-elevation 20
 gallery  hydrogen-wave     builtin:hydrogen?size=64&type=float32 --color-array wave --color-function coolwarm $atom 19
 gallery  duct-arrays       builtin:duct?cells=300000 --array pressure --variables gradient,array:speed $above 33
-gallery  turbulence-gradient builtin:turbulence?size=64&type=float32&seed=4 --filter bspline --variables gradient
+gallery  turbulence-widgets builtin:turbulence?size=64&type=float32&seed=4 $skins
 methods  green-pre         builtin:hydrogen $green --classification pre
 methods  green-post        builtin:hydrogen $green --classification post --samples-per-voxel 1
 methods  green-rate-1      builtin:hydrogen $green --samples-per-voxel 1
@@ -84,7 +85,8 @@ methods  arrays-value-mesh $duct $bands
 methods  arrays-gradient-mesh $duct --variables gradient
 methods  arrays-color-mesh $duct $bands --color-array speed --color-function turbo
 methods  arrays-three-mesh $duct --variables gradient,array:speed
-methods  arrays-widgets-mesh $duct --variables array:speed --widget gaussian:-0.2,0.9:0.15,0.15:1,0.5,0.1:0.3 --widget gaussian:0.2,1.1:0.1,0.1:0.2,0.6,1:0.3 --widget rectangle:0.45,0.2:0.15,0.2:0.5,1,0.4:0.2
+methods  arrays-widgets-mesh builtin:buckyball?cells=500000 --resolution 300,300 $ball 27 --variables gradient --widget gaussian:0.3,3:0.05,1.5:1,0.6,0.2:0.3 --widget rectangle:0.8,0.7:0.3,0.7:0.3,0.6,1:0.3
+methods  arrays-widgets-grid builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 $skins
 methods  arrays-value-grid $wave
 methods  arrays-gradient-grid $wave --variables gradient
 methods  arrays-color-grid $wave --color-array wave --color-function coolwarm

@@ -23,6 +23,11 @@ MemoryPlan plan_memory(const Dataset& dataset, const RenderSettings& settings) {
     plan_preparing(estimate_prepare_memory(dataset.grid), 1 + dataset.other_grids.size());
     plan.values = value_bytes(dataset);
     plan.render = estimate_render_memory(dataset.grid, settings);
+    // Further fields have copies of their own where the filter asks for them.
+    RenderSettings unfiltered = settings;
+    unfiltered.filter = {};
+    for (const GridData& other : dataset.other_grids)
+      plan.render += estimate_render_memory(other, settings) - estimate_render_memory(other, unfiltered);
   } else {
     const MeshData& mesh = dataset.mesh;
     plan_preparing(estimate_prepare_memory(mesh), 1);

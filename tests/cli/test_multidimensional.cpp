@@ -166,6 +166,21 @@ TEST_F(Multidimensional, WhatDoesNotGoTogetherIsRefused) {
   EXPECT_TRUE(names().empty());
 }
 
+TEST_F(Multidimensional, AnEmptyPictureSaysWhy) {
+  const Result result = run({"render", kAtom, "--variables", "gradient", "--widget", "rectangle:5,5:1,1",
+                             "--resolution", "8,8", "-o", "a.png"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.err.find("the picture is empty: nothing that is opaque by the widgets"), std::string::npos)
+      << result.err;
+}
+
+TEST_F(Multidimensional, StatisticsNameWhatIntegrates) {
+  draw("a.npy", {kAtom, "--variables", "gradient", "--statistics", "a.json"});
+  EXPECT_EQ(scene("a.json")["integrator"], "domain");
+  draw("a.npy", {kAtom, "--statistics", "a.json"});
+  EXPECT_EQ(scene("a.json")["integrator"], "antiderivative");
+}
+
 TEST_F(Multidimensional, AJointHistogram) {
   ASSERT_EQ(run({"histogram", kDuct, "--kind", "joint", "--array", "pressure", "--other-array", "speed"}).code, 0);
   EXPECT_GT(read("duct-histogram.png").size(), 1000u);
