@@ -23,14 +23,19 @@ namespace HWY_NAMESPACE {
 /// The straight way of a vector of rays through the domain, u from 0 to 1.
 template <int kCount>
 struct DomainPath {
-  Float begin[kCount], span[kCount];
+  Float begin[kCount], span[kCount], inverse[kCount];
 
+  HWY_INLINE void set(int axis, Float from, Float to) {
+    begin[axis] = from;
+    span[axis] = hn::Sub(to, from);
+    inverse[axis] = hn::Div(constant(1.0f), hn::IfThenElse(is_level(axis), constant(1.0f), span[axis]));
+  }
+  HWY_INLINE Mask is_level(int axis) const { return hn::Le(hn::Abs(span[axis]), constant(1e-20f)); }
   HWY_INLINE Float at(int axis, Float u) const { return multiply_add(u, span[axis], begin[axis]); }
   /// Where it meets `value`; never where it does not move.
   HWY_INLINE Float meets(int axis, Float value) const {
-    const Mask level = hn::Eq(span[axis], constant(0.0f));
-    const Float u = hn::Div(hn::Sub(value, begin[axis]), hn::IfThenElse(level, constant(1.0f), span[axis]));
-    return hn::IfThenElse(level, constant(2.0f), u);
+    const Float u = hn::Mul(hn::Sub(value, begin[axis]), inverse[axis]);
+    return hn::IfThenElse(is_level(axis), constant(2.0f), u);
   }
 };
 

@@ -27,7 +27,7 @@ struct CellStretch {
   const LatticeRays& rays;
   const CellCorners& corners;
   const CellCubic& cubic;
-  const CellCubic* others = nullptr;  ///< [kMostVariables] of the function's axes that have one
+  const CellCubic* others;  ///< [kMostVariables] of the function's axes that have one
 
   HWY_INLINE Float scalar(Float u) const { return cubic.eval(u); }
   HWY_INLINE Float other(int axis, Float u) const { return others[axis].eval(u); }
