@@ -19,7 +19,7 @@ constexpr const char* kDefaultColors = "viridis";
 
 /// Refuses options of functions of one variable.
 void refuse_simple(const FunctionOptions& function) {
-  const std::string reason = ": is for functions of the value alone: leave it out, or leave out --variables";
+  const std::string reason = ": is for functions of the value alone: leave it out, or draw by the value (--variables none)";
   if (!function.function.empty()) throw UsageError("--transfer-function" + reason);
   if (!function.preset_name.empty()) throw UsageError("--preset-name" + reason);
   if (function.use_logarithm) throw UsageError("--log" + reason);
@@ -79,15 +79,16 @@ MultidimensionalFunction make_default_function(const std::vector<Variable>& vari
   return std::visit([&](const auto& prepared) { return make_default_multidimensional(prepared, variables); }, body);
 }
 
-/// Gives every variable a range.
-void complete_ranges(const Body& body, std::vector<Variable>& variables) {
-  bool are_known = true;
-  for (const Variable& variable : variables) are_known &= variable.range.has_value();
-  if (are_known) return;
-  const std::vector<ValueRange> ranges =
-      std::visit([&](const auto& prepared) { return make_variable_ranges(prepared, variables); }, body);
+/// Gives every variable a range, where it is wider than one value. Returns the ranges.
+std::vector<ValueRange> complete_ranges(const Body& body, std::vector<Variable>& variables) {
+  std::vector<ValueRange> ranges;
+  for (const Variable& variable : variables)
+    if (variable.range) ranges.push_back(*variable.range);
+  if (ranges.size() == variables.size()) return ranges;
+  ranges = std::visit([&](const auto& prepared) { return make_variable_ranges(prepared, variables); }, body);
   for (std::size_t i = 0; i < variables.size(); ++i)
     if (!variables[i].range && ranges[i].min < ranges[i].max) variables[i].range = ranges[i];
+  return ranges;
 }
 
 /// The colours of a file or preset, or those of the map.
@@ -132,8 +133,7 @@ std::optional<OpticalTable> choose_table(const MultidimensionalOptions& options,
     chosen.resolution = options.resolution.value_or(chosen.resolution);
   }
   if (function.unit_distance) chosen.unit_distance = function.unit_distance;
-  complete_ranges(body, chosen.variables);
-  const std::vector<ValueRange> ranges(chosen.variables.size(), scalar_range_of(body));
+  const std::vector<ValueRange> ranges = complete_ranges(body, chosen.variables);
   const double unit_distance = default_unit_distance(body);
   if (chosen.table_file.empty()) return make_optical_table(chosen, ranges, unit_distance);
   const FunctionTable table = read_function_table(chosen.table_file, chosen.variables.size());
