@@ -19,7 +19,8 @@ constexpr const char* kDefaultColors = "viridis";
 
 /// Refuses options of functions of one variable.
 void refuse_simple(const FunctionOptions& function) {
-  const std::string reason = ": is for functions of the value alone: leave it out, or draw by the value (--variables none)";
+  const std::string reason =
+      ": is for functions of the value alone: leave it out, or draw by the value (--variables none)";
   if (!function.function.empty()) throw UsageError("--transfer-function" + reason);
   if (!function.preset_name.empty()) throw UsageError("--preset-name" + reason);
   if (function.use_logarithm) throw UsageError("--log" + reason);
@@ -81,13 +82,10 @@ MultidimensionalFunction make_default_function(const std::vector<Variable>& vari
 
 /// Gives every variable a range, where it is wider than one value. Returns the ranges.
 std::vector<ValueRange> complete_ranges(const Body& body, std::vector<Variable>& variables) {
-  std::vector<ValueRange> ranges;
-  for (const Variable& variable : variables)
-    if (variable.range) ranges.push_back(*variable.range);
-  if (ranges.size() == variables.size()) return ranges;
-  ranges = std::visit([&](const auto& prepared) { return make_variable_ranges(prepared, variables); }, body);
+  const std::vector<ValueRange> ranges =
+      std::visit([&](const auto& prepared) { return make_variable_ranges(prepared, variables); }, body);
   for (std::size_t i = 0; i < variables.size(); ++i)
-    if (!variables[i].range && ranges[i].min < ranges[i].max) variables[i].range = ranges[i];
+    if (ranges[i].min < ranges[i].max) variables[i].range = ranges[i];
   return ranges;
 }
 

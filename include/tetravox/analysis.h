@@ -56,8 +56,8 @@ Histogram2D make_gradient_histogram(const PreparedGrid& grid, const HistogramOpt
 Histogram2D make_joint_histogram(const PreparedMesh& mesh, std::size_t other, const HistogramOptions& options = {});
 Histogram2D make_joint_histogram(const PreparedGrid& grid, std::size_t other, const HistogramOptions& options = {});
 
-/// What occurs of each variable, [variables]: all values; of gradient magnitudes what is left without a few outliers,
-/// from 0. Variables of kArray take `PreparedMesh::others` in turn, from the first.
+/// The range of each variable, [variables]: its own, or what occurs: all values; of gradient magnitudes what is left
+/// without a few outliers, from 0. Variables of kArray take `PreparedMesh::others` in turn, from the first.
 /// @throws Error (kInvalidArgument) where there are fewer others than that.
 std::vector<ValueRange> make_variable_ranges(const PreparedMesh& mesh, const std::vector<Variable>& variables);
 std::vector<ValueRange> make_variable_ranges(const PreparedGrid& grid, const std::vector<Variable>& variables);

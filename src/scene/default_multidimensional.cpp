@@ -41,15 +41,16 @@ std::vector<ValueRange> ranges_of(const Prepared& prepared, const std::vector<Va
   std::vector<ValueRange> ranges;
   std::size_t other = 0;
   for (const Variable& variable : variables) {
-    if (variable.kind == VariableKind::kValue) {
-      ranges.push_back(prepared.scalar_range);
-    } else if (variable.kind == VariableKind::kArray) {
-      ranges.push_back(scene::frame_of_other(prepared, other++).range);
-    } else {
+    ValueRange range = prepared.scalar_range;
+    if (variable.kind == VariableKind::kArray) range = scene::frame_of_other(prepared, other++).range;
+    if (variable.range) {
+      range = *variable.range;
+    } else if (variable.kind == VariableKind::kGradient) {
       const scene::DifferentialSamples field = scene::sample_differentials(prepared, kRangeSampleCount);
       const double world_per_stored = prepared.scalar_scale / field.unit_length;
-      ranges.push_back({0.0, scene::range_of_gradients(field.samples).max * world_per_stored});
+      range = {0.0, scene::range_of_gradients(field.samples).max * world_per_stored};
     }
+    ranges.push_back(range);
   }
   return ranges;
 }
@@ -103,7 +104,7 @@ std::vector<Axis> make_axes(const Prepared& prepared, const std::vector<Variable
   std::vector<Axis> axes;
   std::size_t other = 0;
   for (std::size_t i = 0; i < variables.size(); ++i) {
-    Axis axis{variables[i].kind, variables[i].range.value_or(ranges[i]), {}};
+    Axis axis{variables[i].kind, ranges[i], {}};
     if (axis.kind == VariableKind::kArray) {
       const scene::OtherFrame frame = scene::frame_of_other(prepared, other);
       for (const float stored : field.others[other])
