@@ -4,6 +4,7 @@
 #include "src/scene/differential_samples.h"
 #include "src/scene/other_fields.h"
 #include "src/scene/volume_bins.h"
+#include "src/support/threads.h"
 #include "tetravox/analysis.h"
 #include "tetravox/scene.h"
 
@@ -224,15 +225,18 @@ double share_of(const Widget& widget, const std::vector<Axis>& axes,
 /// Opacities that keep to the budget of optical depth; none where the value is that of a background.
 void set_opacities(const std::vector<Axis>& axes, const std::vector<scene::DifferentialSample>& samples,
                    const std::optional<ValueRange>& background, std::vector<Widget>& widgets) {
-  std::vector<double> shares, extinctions;
-  for (const Widget& widget : widgets) {
+  std::vector<double> shares(widgets.size()), extinctions;
+  support::parallel_chunks(widgets.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) shares[i] = share_of(widgets[i], axes, samples);
+  });
+  for (std::size_t i = 0; i < widgets.size(); ++i) {
     bool is_shown = true;
-    for (std::size_t axis = 0; axis < axes.size(); ++axis)
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      const double center = widgets[i].center[axis], gap = kBackgroundGap * widgets[i].radius[axis];
       if (background && axes[axis].kind == VariableKind::kValue)
-        is_shown &= widget.center[axis] + kBackgroundGap * widget.radius[axis] < background->min ||
-                    widget.center[axis] - kBackgroundGap * widget.radius[axis] > background->max;
-    shares.push_back(share_of(widget, axes, samples));
-    const double density = shares.back() * static_cast<double>(widgets.size());
+        is_shown &= center + gap < background->min || center - gap > background->max;
+    }
+    const double density = shares[i] * static_cast<double>(widgets.size());
     extinctions.push_back(is_shown ? std::pow(density + 0.02, -kRarity) : 0.0);
   }
   extinctions = optics::fit_budget(shares, shares, extinctions);
