@@ -66,7 +66,7 @@ OpticalTable make_table(const OpticalFunction& function, const ValueRange& value
 template <class Prepared>
 void measure(const Prepared& prepared, double tolerance) {
   const tetravox::CompletedScene scene = complete_scene({}, prepared);
-  const ValueRange gradients = make_gradient_histogram(prepared).gradient_range;
+  const ValueRange gradients = make_gradient_histogram(prepared).other_range;
   OpticalFunction colors;
   for (const double t : {0.0, 0.5, 1.0})
     colors.points.push_back({prepared.scalar_range.min + t * (prepared.scalar_range.max - prepared.scalar_range.min),
