@@ -41,23 +41,19 @@ float find_steepness(const std::vector<float>& entries, std::size_t stride, std:
   return largest;
 }
 
-/// Largest change of the extinction with the value, and of the colour; huge at steps.
-struct Slopes {
-  double extinction = 0.0, color = 0.0;
-};
-Slopes find_slopes(const OpticalFunction& function) {
+/// Largest change of the colour with the value; huge at steps.
+double find_color_slope(const OpticalFunction& colors) {
   constexpr double kNarrowest = 1e-4;  // of the range: what is steeper counts as a step
-  Slopes slopes;
-  const auto& points = function.points;
+  const auto& points = colors.points;
   const double least = kNarrowest * (points.back().value - points.front().value);
+  double slope = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double width = std::max(points[i].value - points[i - 1].value, least);
     if (!(width > 0.0)) continue;
-    slopes.extinction = std::max(slopes.extinction, std::abs(points[i].extinction - points[i - 1].extinction) / width);
     for (std::size_t channel = 0; channel < 3; ++channel)
-      slopes.color = std::max(slopes.color, std::abs(points[i].color[channel] - points[i - 1].color[channel]) / width);
+      slope = std::max(slope, std::abs(points[i].color[channel] - points[i - 1].color[channel]) / width);
   }
-  return slopes;
+  return slope;
 }
 
 }  // namespace
@@ -109,11 +105,13 @@ Domain make_color_domain(std::size_t other, const OpticalFunction& colors, const
   domain.others[1] = require_other(other, scalars);
   const optics::ScalarMap& map = scalars.others[other];
   domain.colors = optics::build_control_point_table(colors, map);
-  double largest = 0.0;
-  for (const OpticalPoint& point : function.points) largest = std::max(largest, point.extinction);
-  domain.axes[0].steepness = static_cast<float>(find_slopes(function).extinction * scalars.scalar.scale);
+  const optics::ScalarMap& scalar = scalars.scalar;
+  optics::build_steepness_table(optics::build_control_point_table(function, scalar),
+                                scalar.stored_from_value(scalars.range.min),
+                                scalar.stored_from_value(scalars.range.max), domain.extinctions);
+  domain.axes[0].steepness = 1.0f;  // as `extinctions` say
   domain.axes[1].source = DomainAxis::Source::kOther;
-  domain.axes[1].steepness = static_cast<float>(largest * find_slopes(colors).color * map.scale);
+  domain.axes[1].steepness = static_cast<float>(find_color_slope(colors) * map.scale);
   return domain;
 }
 
@@ -192,7 +190,9 @@ DomainFunction make_domain_function(const Domain& domain, const TableOccupancy& 
     function.occupied = occupancy.sums.data();
   } else {
     function.colors = &domain.colors;
+    function.extinctions = &domain.extinctions;
   }
+  function.haze = allowed_haze_of(tolerance, diagonal);
   function.allowed_rate = allowed_rate_of(tolerance, diagonal);
   function.most_pieces = most_pieces_of(tolerance);
   return function;

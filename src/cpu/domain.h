@@ -4,6 +4,7 @@
 
 #include "src/cpu/kernels/kernels.h"
 #include "src/optics/antiderivative_table.h"
+#include "src/optics/steepness_table.h"
 #include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
 
@@ -19,6 +20,7 @@ namespace tetravox::cpu {
 /// How the scalars of the data are stored.
 struct DomainScalars {
   optics::ScalarMap scalar;
+  ValueRange range;             ///< of the values
   double gradient_scale = 1.0;  ///< value per world length / stored scalar per local length
   std::vector<optics::ScalarMap> others;
 };
@@ -29,11 +31,15 @@ struct Domain {
   std::array<std::optional<std::size_t>, kMostVariables> others;  ///< of each axis: which further scalars
   std::vector<float> entries;                                     ///< see DomainFunction; empty: colour alone
   optics::ControlPointTable colors;
+  optics::SteepnessTable extinctions;  ///< of the transfer function, with `colors`
 
   bool is_set() const { return count > 0; }
   bool is_table() const { return !entries.empty(); }
   bool wants_gradients() const;
-  std::uint64_t bytes() const { return entries.size() * sizeof(float) + colors.bytes(); }
+  std::uint64_t bytes() const {
+    return (entries.size() + extinctions.steepness.size() + extinctions.extinction.size()) * sizeof(float) +
+           colors.bytes();
+  }
 };
 
 /// `others`: see `Renderer::set_multidimensional_function`.

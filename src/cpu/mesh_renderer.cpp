@@ -181,7 +181,7 @@ class MeshRenderer final : public FrameRenderer {
 DomainScalars MeshRenderer::scalars() const {
   const bool is_cell = mesh_.association == Association::kCell;
   const std::size_t wanted = is_cell ? mesh_.cells.size() : mesh_.vertices.size();
-  DomainScalars scalars{{mesh_.scalar_offset, mesh_.scalar_scale}, mesh::gradient_scale(mesh_), {}};
+  DomainScalars scalars{{mesh_.scalar_offset, mesh_.scalar_scale}, mesh_.scalar_range, mesh::gradient_scale(mesh_), {}};
   for (const OtherScalars& other : mesh_.others) {
     if (other.scalars.size() != wanted)
       throw Error(ErrorCode::kInvalidArgument, "a further field of the mesh has " +

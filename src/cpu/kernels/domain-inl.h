@@ -103,13 +103,14 @@ class DomainIntegrator : public WithoutFront {
   HWY_NOINLINE void integrate_stretch(const Stretch& stretch, const Cut& begin, const Cut& end, Accumulated& sum,
                                       Float* moment, const FindLength& find_length, const Note& note) const {
     Place at = place_at(stretch, begin), last_place = place_at(stretch, end);
-    const Mask seen = hn::And(hn::Gt(stretch.length, constant(0.0f)), is_occupied(stretch, at, last_place));
+    const Range range = find_range(stretch, at, last_place);
+    const Mask seen = hn::And(hn::Gt(stretch.length, constant(0.0f)), function_.is_occupied(range.low, range.high));
     if (hn::AllFalse(kFloat, seen)) return note(begin, end, sum.transmittance);
     add_gradient(stretch, begin, at);
     add_gradient(stretch, end, last_place);
     const Float one = constant(1.0f);
     const Float pieces =
-        hn::IfThenElse(seen, count_pieces(stretch, {begin, end, at, last_place}, sum.transmittance), one);
+        hn::IfThenElse(seen, count_pieces(stretch, {begin, end, at, last_place}, range, sum.transmittance), one);
     const Float share = hn::Div(hn::Sub(end.u, begin.u), pieces);
     Cut cut = begin;
     for (Float number = one;; number = hn::Add(number, one)) {
@@ -186,16 +187,21 @@ class DomainIntegrator : public WithoutFront {
       return source == DomainAxis::Source::kScalar ? stretch.bend() : stretch.other_bend(axis);
   }
 
-  /// Whether the function absorbs anywhere near what the stretch passes, whatever the gradient.
-  template <class Stretch>
-  HWY_INLINE Mask is_occupied(const Stretch& stretch, const Place& a, const Place& b) const {
+  /// What coordinates a stretch may take, whatever the gradient.
+  struct Range {
     Float low[kCount], high[kCount];
+  };
+  template <class Stretch>
+  HWY_INLINE Range find_range(const Stretch& stretch, const Place& a, const Place& b) const {
+    Range range;
+    Float *low = range.low, *high = range.high;
     const auto present = [](Float x) { return hn::IfThenElseZero(hn::Eq(x, x), x); };
     for (int axis = 0; axis < kCount; ++axis) {
       const DomainAxis& of = domain_.axes[axis];
       low[axis] = hn::Min(present(a.coordinates[axis]), present(b.coordinates[axis]));
       high[axis] = hn::Max(present(a.coordinates[axis]), present(b.coordinates[axis]));
       if (of.source == DomainAxis::Source::kGradient) {
+        low[axis] = constant(0.0f);
         high[axis] = constant(static_cast<float>(of.last));
       } else if constexpr (!Stretch::kIsLinear) {
         const Float margin =
@@ -204,21 +210,22 @@ class DomainIntegrator : public WithoutFront {
         high[axis] = hn::Add(high[axis], margin);
       }
     }
-    return function_.is_occupied(low, high);
+    return range;
   }
 
   /// Linear pieces that a stretch needs for what is bent in it.
   template <class Stretch>
-  HWY_INLINE Float count_pieces(const Stretch& stretch, const Piece& whole, Float transmittance) const {
+  HWY_INLINE Float count_pieces(const Stretch& stretch, const Piece& whole, const Range& range,
+                                Float transmittance) const {
     const Float part = hn::Sub(whole.b.u, whole.a.u), square = hn::Mul(part, part);
     Float rate = constant(0.0f);
     for (int axis = 0; axis < kCount; ++axis) {
       const DomainAxis& of = domain_.axes[axis];
-      if (of.steepness == 0.0f) continue;
-      Float bend = of.source == DomainAxis::Source::kGradient ? bend_of_magnitude(stretch, whole)
-                                                              : hn::Mul(square, bend_of(stretch, of.source, axis));
+      const bool is_gradient = of.source == DomainAxis::Source::kGradient;
+      if (of.steepness == 0.0f || (Stretch::kIsLinear && !is_gradient)) continue;
+      Float bend = is_gradient ? bend_of_magnitude(stretch, whole) : hn::Mul(square, bend_of(stretch, of.source, axis));
       bend = hn::IfThenElseZero(hn::Eq(bend, bend), bend);  // of missing values nothing is drawn
-      rate = multiply_add(bend, constant(of.steepness), rate);
+      rate = multiply_add(bend, function_.find_steepness_of(axis, range.low, range.high), rate);
     }
     const Float error = hn::Mul(hn::Mul(rate, transmittance), constant(1.0f / domain_.allowed_rate));
     return hn::Min(hn::Max(hn::Ceil(hn::Sqrt(error)), constant(1.0f)), constant(domain_.most_pieces));

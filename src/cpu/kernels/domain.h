@@ -3,6 +3,7 @@
 /// Functions of several variables, and colour from another array than opacity, as the kernels want them.
 
 #include "src/optics/antiderivative_table.h"
+#include "src/optics/steepness_table.h"
 
 #include <cstdint>
 
@@ -20,8 +21,9 @@ struct DomainAxis {
   };
   Source source = Source::kScalar;
   float first = 0.0f, entries_per_scalar = 1.0f;
-  std::int32_t last = 1;   ///< entries less 1
-  float steepness = 0.0f;  ///< largest change of density, for one unit of stored scalar
+  std::int32_t last = 1;  ///< entries less 1
+  /// Largest change of density, for one unit of stored scalar; where there are `colors`, of these.
+  float steepness = 0.0f;
 };
 
 /// Where `colors` is set, extinction is that of `IntegratorTables::control_points` at the scalar, and the colour that
@@ -34,6 +36,8 @@ struct DomainFunction {
   /// [..], one more than entries along each axis: how many absorb of those below (summed-area table; Crow 1984).
   const std::int32_t* occupied = nullptr;
   const optics::ControlPointTable* colors = nullptr;
+  const optics::SteepnessTable* extinctions = nullptr;  ///< with `colors`: of the extinction
+  float haze = 0.0f;                                    ///< extinction that counts as none
   float allowed_rate = 0.0f;  ///< error in colour for one unit of world length that pieces may have
   float most_pieces = 12.0f;  ///< that what is bent is cut into
 };

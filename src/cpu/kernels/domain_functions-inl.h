@@ -1,6 +1,7 @@
 // Functions over a domain, and the straight ways through it.
 //
-// A function offers kCount (of axes), kIsContinuous, coordinate(axis, scalar), is_occupied(low, high); the box of the
+// A function offers kCount (of axes), kIsContinuous, coordinate(axis, scalar); is_occupied(low, high) and
+// find_steepness_of(axis, low, high) of what lies between coordinates; the box of the
 // domain that a path starts in, in which it is a polynomial, where it leaves that along each axis, and the next one;
 // load(box), and eval(path, what was loaded, u).
 
@@ -13,6 +14,7 @@
 
 #include "src/cpu/kernels/domain.h"
 #include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/march-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 
@@ -87,6 +89,11 @@ class TableFunction {
       sum = is_added ? hn::Add(sum, count) : hn::Sub(sum, count);
     }
     return hn::RebindMask(kFloat, hn::Ne(sum, hn::Zero(kInt)));
+  }
+
+  /// Largest change of density for one unit of stored scalar of an axis, between coordinates.
+  HWY_INLINE Float find_steepness_of(int axis, const Float*, const Float*) const {
+    return constant(domain_.axes[axis].steepness);
   }
 
   /// The box between entries that a path is in: the number of its lower entry along each axis, -1 below the table, the
@@ -167,10 +174,18 @@ class SeparateFunction {
   using Path = DomainPath<kCount>;
 
   explicit SeparateFunction(const IntegratorTables& tables)
-      : points_{ControlPoints(*tables.control_points), ControlPoints(*tables.domain->colors)} {}
+      : domain_(*tables.domain),
+        table_(*domain_.extinctions),
+        points_{ControlPoints(*tables.control_points), ControlPoints(*domain_.colors)} {}
 
   HWY_INLINE Float coordinate(int, Float scalar) const { return scalar; }
-  HWY_INLINE Mask is_occupied(const Float*, const Float*) const { return hn::FirstN(kFloat, kLanes); }
+  HWY_INLINE Mask is_occupied(const Float low[kCount], const Float high[kCount]) const {
+    return hn::Gt(find_largest(table_, table_.extinction, low[0], high[0]), constant(domain_.haze));
+  }
+  HWY_INLINE Float find_steepness_of(int axis, const Float low[kCount], const Float high[kCount]) const {
+    if (axis == 0) return find_steepness(table_, low[0], high[0]);
+    return hn::Mul(find_largest(table_, table_.extinction, low[0], high[0]), constant(domain_.axes[1].steepness));
+  }
 
   /// The intervals between control points that a path is in.
   struct Box {
@@ -201,6 +216,8 @@ class SeparateFunction {
   }
 
  private:
+  const DomainFunction& domain_;
+  const optics::SteepnessTable& table_;
   ControlPoints points_[kCount];
 };
 

@@ -15,6 +15,7 @@
 #include "src/cpu/kernels/vector_math-inl.h"
 
 #include <algorithm>
+#include <vector>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
@@ -64,8 +65,9 @@ HWY_INLINE CellCubic make_cubic(const CellCorners& corners, const LatticeRays& r
           multiply_add(dz, rise[1], multiply_add(z, rise[2], low[2])), hn::Mul(dz, rise[2])};
 }
 
-/// Largest change of density with the scalar over a range (see optics::SteepnessTable).
-HWY_INLINE Float find_steepness(const optics::SteepnessTable& table, Float low, Float high) {
+/// Largest of `values`, one of the two of a table, over a range of scalars (see optics::SteepnessTable).
+HWY_INLINE Float find_largest(const optics::SteepnessTable& table, const std::vector<float>& values, Float low,
+                              Float high) {
   const auto bin = [&](Float scalar) {
     const Float at = hn::Mul(hn::Sub(scalar, constant(table.first)), constant(table.bins_per_scalar));
     return hn::ConvertTo(kInt, hn::Min(hn::Max(at, constant(0.0f)), constant(optics::SteepnessTable::kBins - 1)));
@@ -77,10 +79,14 @@ HWY_INLINE Float find_steepness(const optics::SteepnessTable& table, Float low, 
   const Int width = hn::BitCast(kInt, hn::ShiftLeft<23>(hn::Add(level, hn::Set(kInt, 127))));
   const Int bins = hn::ConvertTo(kInt, hn::BitCast(kFloat, width));
   const Int row = hn::Mul(level, hn::Set(kInt, optics::SteepnessTable::kBins));
-  const float* values = table.steepness.data();
   const Int end = hn::Add(hn::Sub(last, bins), hn::Set(kInt, 1));
-  return hn::Max(hn::GatherIndex(kFloat, values, hn::Add(row, first)),
-                 hn::GatherIndex(kFloat, values, hn::Add(row, end)));
+  return hn::Max(hn::GatherIndex(kFloat, values.data(), hn::Add(row, first)),
+                 hn::GatherIndex(kFloat, values.data(), hn::Add(row, end)));
+}
+
+/// Largest change of density with the scalar over a range.
+HWY_INLINE Float find_steepness(const optics::SteepnessTable& table, Float low, Float high) {
+  return find_largest(table, table.steepness, low, high);
 }
 
 /// A cell with a corner that is missing is transparent; behind it the ray sets out anew.
