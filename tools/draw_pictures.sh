@@ -21,6 +21,12 @@ grid='builtin:marschner-lobb?size=96 --resolution 300,300 --filter bspline-inter
 side='--lights directional:-1,0.6,-1.2 --shadows volume'
 white='0.85,0.8,0.7'
 
+# Of docs/methods/multidimensional.md: each on a mesh and on a grid.
+duct="builtin:duct?cells=300000 --array pressure --resolution 300,300 $above 33"
+bands='--transfer-function coolwarm:peaks=15 --range -1.2,0.548'
+skins='--variables gradient --widget triangle:0.62,4:0.15,4:1,0.6,0.2:0.6 --widget triangle:0.35,4:0.15,4:0.2,0.5,1:0.3'
+wave="builtin:hydrogen?size=64&type=float32 --resolution 300,300 $atom 19"
+
 # Each line: set, picture, what `tetravox render` is given (or `tetravox histogram`, where that word comes first).
 pictures="
 demo     buckyball         builtin:buckyball?cells=2000000 --transfer-function inferno:peaks=4 --range 0.05,1.04 --unit-distance 0.016 $ball 23
@@ -36,6 +42,9 @@ gallery  duct-volume       builtin:duct?cells=6000 --array volume --transfer-fun
 gallery  turbulence        builtin:turbulence?size=64&type=float32&seed=4 --filter bspline --transfer-function viridis:peaks=5 --range 0.5,0.9 --unit-distance 0.005
 gallery  hydrogen          builtin:hydrogen?size=64&type=float32 --transfer-function rainbow:peaks=6 --unit-distance 0.5 $atom 19
 gallery  marschner-lobb    builtin:marschner-lobb?size=96 --filter bspline-interpolating --transfer-function plasma:peaks=1 --range 0,1 --unit-distance 0.006 --camera-elevation 20
+gallery  hydrogen-wave     builtin:hydrogen?size=64&type=float32 --color-array wave --color-function coolwarm $atom 19
+gallery  duct-arrays       builtin:duct?cells=300000 --array pressure --variables gradient,array:speed $above 33
+gallery  turbulence-widgets builtin:turbulence?size=64&type=float32&seed=4 $skins
 methods  green-pre         builtin:hydrogen $green --classification pre
 methods  green-post        builtin:hydrogen $green --classification post --samples-per-voxel 1
 methods  green-rate-1      builtin:hydrogen $green --samples-per-voxel 1
@@ -72,6 +81,17 @@ methods  clip-mesh         $mesh --isosurface 0.45 --transfer-function inferno:p
 methods  clip-grid         builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 --transfer-function viridis:peaks=5 --range 0.3,0.9 --unit-distance 0.003 --shade --clip-sphere outside:0.5,0.2,0.8,0.45
 methods  weight-mesh       builtin:duct?cells=300000 --array speed --resolution 300,300 --transfer-function turbo:constant=0.5 $above 33 --opacity-weight scalar-difference --opacity-weight-scale 0.2
 methods  weight-grid       builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 --filter bspline --transfer-function viridis:constant=0.3 --opacity-weight gradient --opacity-weight-scale 0.1
+methods  arrays-value-mesh $duct $bands
+methods  arrays-gradient-mesh $duct --variables gradient
+methods  arrays-color-mesh $duct $bands --color-array speed --color-function turbo
+methods  arrays-three-mesh $duct --variables gradient,array:speed
+methods  arrays-widgets-mesh builtin:buckyball?cells=500000 --resolution 300,300 $ball 27 --variables gradient --widget gaussian:0.3,3:0.05,1.5:1,0.6,0.2:0.3 --widget rectangle:0.8,0.7:0.3,0.7:0.3,0.6,1:0.3
+methods  arrays-widgets-grid builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 $skins
+methods  arrays-value-grid $wave
+methods  arrays-gradient-grid $wave --variables gradient
+methods  arrays-color-grid $wave --color-array wave --color-function coolwarm
+methods  arrays-three-grid $wave --variables gradient,array:wave
+methods  arrays-histogram  histogram builtin:duct?cells=100000 --kind joint --array pressure --other-array speed
 methods  boundaries-default builtin:buckyball?cells=500000 --resolution 320,320 $ball 23
 methods  boundaries        builtin:buckyball?cells=500000 --resolution 320,320 --transfer-function auto:boundaries $ball 23
 methods  boundaries-thick  builtin:buckyball?cells=500000 --resolution 320,320 --transfer-function auto:boundaries=1.5 $ball 23

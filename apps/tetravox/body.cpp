@@ -2,18 +2,24 @@
 
 #include "apps/tetravox/text.h"
 
+#include <cstddef>
+#include <set>
+
 namespace tetravox::tool {
 namespace {
 
 std::uint64_t bytes_of(const PreparedMesh& mesh) {
-  return mesh.vertices.size() * sizeof(Vertex) + mesh.cells.size() * sizeof(TetrahedronLinks) +
-         mesh.cell_scalars.size() * sizeof(float) + mesh.boundary.size() * sizeof(BoundaryFace);
+  std::uint64_t bytes = mesh.vertices.size() * sizeof(Vertex) + mesh.cells.size() * sizeof(TetrahedronLinks) +
+                        mesh.cell_scalars.size() * sizeof(float) + mesh.boundary.size() * sizeof(BoundaryFace);
+  for (const OtherScalars& other : mesh.others) bytes += other.scalars.size() * sizeof(float);
+  return bytes;
 }
 
 /// Of the summaries; the values stay where they are.
 std::uint64_t bytes_of(const PreparedGrid& grid) {
   std::uint64_t bytes = (grid.bricks.min.size() + grid.bricks.max.size()) * sizeof(float);
   for (const std::vector<float>& deviation : grid.bricks.deviation) bytes += deviation.size() * sizeof(float);
+  for (const PreparedGrid& other : grid.others) bytes += bytes_of(other);
   return bytes + grid.bricks.has_missing.size();
 }
 
@@ -41,12 +47,17 @@ BodyStatistics measure(const PreparedGrid& grid) {
 }  // namespace
 
 Body prepare_body(const Dataset& dataset, const Progress& progress) {
-  if (dataset.is_grid()) return prepare_grid(dataset.grid, progress);
+  if (dataset.is_grid()) return prepare_grid(dataset.grid, dataset.other_grids, progress);
   return prepare_mesh(dataset.mesh, progress);
 }
 
 ValueRange scalar_range_of(const Body& body) {
   return std::visit([](const auto& prepared) { return prepared.scalar_range; }, body);
+}
+
+ValueRange other_range_of(const Body& body, std::size_t other) {
+  if (const auto* mesh = std::get_if<PreparedMesh>(&body)) return mesh->others.at(other).range;
+  return std::get<PreparedGrid>(body).others.at(other).scalar_range;
 }
 
 std::array<ValueRange, 3> bounds_of(const Body& body) {
@@ -70,10 +81,21 @@ ReadArray array_of(const Dataset& dataset) {
   return dataset.is_grid() ? read(dataset.grid) : read(dataset.mesh);
 }
 
+std::uint64_t value_bytes(const Dataset& dataset) {
+  // Components of one array share their values.
+  std::set<const std::byte*> counted{dataset.grid.values.data()};
+  std::uint64_t bytes = dataset.grid.values.size_bytes();
+  for (const GridData& other : dataset.other_grids)
+    if (counted.insert(other.values.data()).second) bytes += other.values.size_bytes();
+  return bytes;
+}
+
 std::uint64_t input_bytes(const Dataset& dataset) {
-  if (dataset.is_grid()) return dataset.grid.values.size_bytes();
+  if (dataset.is_grid()) return value_bytes(dataset);
   const MeshData& mesh = dataset.mesh;
-  return mesh.points.size_bytes() + mesh.cell_types.size_bytes() + mesh.cell_offsets.size_bytes() +
+  std::uint64_t others = 0;
+  for (const OtherField& other : mesh.others) others += other.scalars.size_bytes();
+  return others + mesh.points.size_bytes() + mesh.cell_types.size_bytes() + mesh.cell_offsets.size_bytes() +
          mesh.connectivity.size_bytes() + mesh.scalars.size_bytes();
 }
 

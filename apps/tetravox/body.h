@@ -11,6 +11,7 @@
 #include "tetravox/scene.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -23,6 +24,8 @@ using Body = std::variant<PreparedMesh, PreparedGrid>;
 Body prepare_body(const Dataset& dataset, const Progress& progress);
 
 ValueRange scalar_range_of(const Body& body);
+/// Of the further field `other`.
+ValueRange other_range_of(const Body& body, std::size_t other);
 std::array<ValueRange, 3> bounds_of(const Body& body);
 Histogram make_histogram(const Body& body, int bins);
 CompletedScene complete_scene(const Scene& scene, const Body& body);
@@ -36,6 +39,8 @@ struct ReadArray {
 };
 ReadArray array_of(const Dataset& dataset);
 
+/// Bytes of the values of a grid's fields.
+std::uint64_t value_bytes(const Dataset& dataset);
 /// Bytes of what was read.
 std::uint64_t input_bytes(const Dataset& dataset);
 /// Kind, bytes and counts of what preparing made.

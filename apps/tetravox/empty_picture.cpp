@@ -41,6 +41,11 @@ std::string explain_transparent(const PictureContext& context) {
   if (!context.scene.settings.clipping.shapes.empty())
     return "the picture is empty: the clipping keeps nothing that can be seen; the data lie in " +
            format_bounds(bounds_of(context.body)) + "; --clip-box none shows them whole";
+  // Where no brick has anything opaque, no ray is followed: that the camera sees the data cannot be told.
+  if (context.scene.multidimensional)
+    return "the picture is empty: nothing that is opaque by the widgets or the table lies where the data are, or the "
+           "camera does not see them (" +
+           format_bounds(bounds_of(context.body)) + "); leave out --widget and --table for a function from the data";
   if (context.statistics.rays == 0)
     return "the picture is empty: the camera does not see the data (" + format_bounds(bounds_of(context.body)) +
            "); leave the camera out for a view of everything";

@@ -23,8 +23,8 @@ constexpr int kLogarithmPieces = 16;
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{64} << 20;  // bytes
 
 /// The range asked for, or the data's. @throws UsageError where it has no logarithm.
-ValueRange range_of(const FunctionOptions& options, const Body& body) {
-  const ValueRange range = options.range.value_or(scalar_range_of(body));
+ValueRange range_of(const FunctionOptions& options, const ValueRange& all) {
+  const ValueRange range = options.range.value_or(all);
   if (options.use_logarithm && !(range.min > 0.0))
     throw UsageError("--log: the range " + format_range(range) +
                      " does not lie above 0: give --range a,b with a above 0");
@@ -52,7 +52,7 @@ std::string read_file(const std::string& path) {
 
 /// A file's function. ParaView's are for the data's range, as there; our own mean the values that they say, unless a
 /// range is given.
-TransferFunction read_function(const FunctionOptions& options, const Body& body) {
+TransferFunction read_function(const FunctionOptions& options, const ValueRange& all) {
   const std::string text = read_file(options.function);
   const bool is_paraview = text.find("\"RGBPoints\"") != std::string::npos;
   PresetOptions preset;
@@ -60,15 +60,17 @@ TransferFunction read_function(const FunctionOptions& options, const Body& body)
   if (!is_paraview) {
     TransferFunction function = parse_transfer_function(text, options.function, options.preset_name, preset, false);
     if (!options.range && !options.use_logarithm) return function;
-    return stretch_function(function, range_of(options, body), options.use_logarithm);
+    return stretch_function(function, range_of(options, all), options.use_logarithm);
   }
-  preset.range = range_of(options, body);
+  preset.range = range_of(options, all);
   preset.logarithmic = options.use_logarithm;
   return parse_transfer_function(text, options.function, options.preset_name, preset, true);
 }
 
 /// "auto:boundaries" or "auto:boundaries=T": made from the data.
 TransferFunction make_automatic_function(const FunctionOptions& options, const Body& body) {
+  if (!options.preset_name.empty())
+    throw UsageError("--preset-name: picks from a file, and '" + options.function + "' is none: leave it out");
   const std::string name = options.function.substr(0, options.function.find('='));
   if (name != "auto:boundaries")
     throw UsageError("--transfer-function: '" + options.function + "' is not known; there is: auto:boundaries=T");
@@ -82,12 +84,11 @@ TransferFunction make_automatic_function(const FunctionOptions& options, const B
   return std::visit([&](const auto& prepared) { return make_boundary_transfer_function(prepared, boundaries); }, body);
 }
 
-TransferFunction make_named_function(const FunctionOptions& options, const Body& body) {
+TransferFunction make_named_function(const FunctionOptions& options, const ValueRange& all) {
   if (!options.preset_name.empty())
     throw UsageError("--preset-name: picks from a file, and '" + options.function + "' is a preset: leave it out");
-  if (options.function.starts_with("auto:")) return make_automatic_function(options, body);
   PresetOptions preset;
-  preset.range = range_of(options, body);
+  preset.range = range_of(options, all);
   preset.logarithmic = options.use_logarithm;
   preset.invert = options.invert;
   return make_preset(options.function, preset);
@@ -121,7 +122,7 @@ Histogram collect_bins(const Histogram& fine, const ValueRange& range, bool use_
 
 /// The default function, for other values than all of the data's.
 TransferFunction make_default_function(const FunctionOptions& options, const Body& body) {
-  const ValueRange range = range_of(options, body);
+  const ValueRange range = range_of(options, scalar_range_of(body));
   if (!options.range && !options.use_logarithm)
     return make_default_transfer_function(make_histogram(body, kBins), options.invert);
   const Histogram fine = make_histogram(body, kFineBins);
@@ -166,12 +167,17 @@ TransferFunction stretch_function(const TransferFunction& function, const ValueR
   return result;
 }
 
+TransferFunction make_given_function(const FunctionOptions& options, const ValueRange& all) {
+  return is_file(options.function) ? read_function(options, all) : make_named_function(options, all);
+}
+
 void choose_function(const FunctionOptions& options, const Body& body, Scene& scene) {
   if (!options.preset_name.empty() && options.function.empty())
     throw UsageError("--preset-name: needs a --transfer-function file to pick from");
   if (!options.function.empty()) {
-    scene.transfer_function =
-        is_file(options.function) ? read_function(options, body) : make_named_function(options, body);
+    scene.transfer_function = options.function.starts_with("auto:")
+                                  ? make_automatic_function(options, body)
+                                  : make_given_function(options, scalar_range_of(body));
   } else if (options.changes_values() && !scene.transfer_function) {
     scene.transfer_function = make_default_function(options, body);
   } else if (options.changes_values()) {
@@ -181,7 +187,7 @@ void choose_function(const FunctionOptions& options, const Body& body, Scene& sc
       scene.transfer_function = parse_transfer_function(format_scene(scene), "the scene", "", preset, false);
     if (options.range || options.use_logarithm)
       scene.transfer_function =
-          stretch_function(*scene.transfer_function, range_of(options, body), options.use_logarithm);
+          stretch_function(*scene.transfer_function, range_of(options, scalar_range_of(body)), options.use_logarithm);
   }
   if (!options.unit_distance) return;
   if (!scene.transfer_function) scene.transfer_function = complete_scene(scene, body).transfer_function;

@@ -46,8 +46,11 @@ std::string choose_output(const HistogramCommandOptions& options, const SceneInp
 }
 
 void require_consistent(const HistogramCommandOptions& options) {
-  if (options.kind == HistogramKind::kValue && (options.gradient_bins || options.gradient_range))
-    throw UsageError("--gradient-bins and --gradient-range need --kind gradient");
+  const bool is_joint = options.kind == HistogramKind::kJoint;
+  if (options.kind == HistogramKind::kValue && (options.other_bins || options.other_range))
+    throw UsageError("--other-bins and --other-range need --kind gradient or joint");
+  if (is_joint && !options.other_array) throw UsageError("--kind joint: name the second array with --other-array");
+  if (!is_joint && options.other_array) throw UsageError("--other-array needs --kind joint");
 }
 
 bool holds_whole_numbers(const Body& body) {
@@ -60,8 +63,8 @@ bool holds_whole_numbers(const Body& body) {
 HistogramOptions choose_options(const HistogramCommandOptions& options, const Body& body) {
   HistogramOptions chosen;
   chosen.range = options.range;
-  chosen.gradient_range = options.gradient_range;
-  chosen.gradient_bins = options.gradient_bins.value_or(kDefaultBins);
+  chosen.other_range = options.other_range;
+  chosen.other_bins = options.other_bins.value_or(kDefaultBins);
   const ValueRange range = options.range.value_or(scalar_range_of(body));
   const double numbers = std::floor(range.max) - std::ceil(range.min) + 1.0;
   const bool is_counted = holds_whole_numbers(body) && numbers >= 1.0 && numbers <= kFewWholeNumbers;
@@ -74,7 +77,7 @@ std::string edge(const ValueRange& range, std::size_t i, std::size_t count) {
   return format_number(std::lerp(range.min, range.max, static_cast<double>(i) / static_cast<double>(count)), kDigits);
 }
 
-std::string format_csv(const Histogram& histogram) {
+std::string format_csv(const Histogram& histogram, const std::string&) {
   std::string text = "value_from,value_to,share\n";
   const std::size_t count = histogram.counts.size();
   for (std::size_t i = 0; i < count; ++i)
@@ -83,15 +86,14 @@ std::string format_csv(const Histogram& histogram) {
   return text;
 }
 
-std::string format_csv(const Histogram2D& histogram) {
-  std::string text = "value_from,value_to,gradient_from,gradient_to,share\n";
-  const auto columns = static_cast<std::size_t>(histogram.bins),
-             rows = static_cast<std::size_t>(histogram.gradient_bins);
+std::string format_csv(const Histogram2D& histogram, const std::string& other) {
+  std::string text = "value_from,value_to," + other + "_from," + other + "_to,share\n";
+  const auto columns = static_cast<std::size_t>(histogram.bins), rows = static_cast<std::size_t>(histogram.other_bins);
   for (std::size_t row = 0; row < rows; ++row) {
-    const std::string gradients =
-        edge(histogram.gradient_range, row, rows) + "," + edge(histogram.gradient_range, row + 1, rows);
+    const std::string others =
+        edge(histogram.other_range, row, rows) + "," + edge(histogram.other_range, row + 1, rows);
     for (std::size_t i = 0; i < columns; ++i)
-      text += edge(histogram.range, i, columns) + "," + edge(histogram.range, i + 1, columns) + "," + gradients + "," +
+      text += edge(histogram.range, i, columns) + "," + edge(histogram.range, i + 1, columns) + "," + others + "," +
               format_number(histogram.counts[row * columns + i], kDigits) + "\n";
   }
   return text;
@@ -99,16 +101,16 @@ std::string format_csv(const Histogram2D& histogram) {
 
 std::vector<std::size_t> shape_of(const Histogram& histogram) { return {histogram.counts.size()}; }
 std::vector<std::size_t> shape_of(const Histogram2D& histogram) {
-  return {static_cast<std::size_t>(histogram.gradient_bins), static_cast<std::size_t>(histogram.bins)};
+  return {static_cast<std::size_t>(histogram.other_bins), static_cast<std::size_t>(histogram.bins)};
 }
 
-std::string describe_axes(const Histogram& histogram) {
+std::string describe_axes(const Histogram& histogram, const std::string&) {
   return "value " + format_range(histogram.range) + " in " + format_count(histogram.counts.size()) + " bins";
 }
-std::string describe_axes(const Histogram2D& histogram) {
+std::string describe_axes(const Histogram2D& histogram, const std::string& other) {
   return "value " + format_range(histogram.range) + " in " + format_count(static_cast<std::uint64_t>(histogram.bins)) +
-         " bins, gradient " + format_range(histogram.gradient_range) + " in " +
-         format_count(static_cast<std::uint64_t>(histogram.gradient_bins)) + " bins";
+         " bins, " + other + " " + format_range(histogram.other_range) + " in " +
+         format_count(static_cast<std::uint64_t>(histogram.other_bins)) + " bins";
 }
 
 /// What the picture's numbers mean: the largest share, and how much lies outside.
@@ -122,16 +124,17 @@ std::string describe_shares(const std::vector<double>& shares) {
 }
 
 template <class AnyHistogram>
-void write_histogram(const std::string& output, const AnyHistogram& histogram, bool use_logarithm) {
+void write_histogram(const std::string& output, const AnyHistogram& histogram, const std::string& other,
+                     bool use_logarithm) {
   OutputFiles files;
   files.write(output, [&](const std::string& path) {
     const std::string ending = ending_of(path);
     if (ending == ".png") write_image(path, draw_histogram(histogram, use_logarithm));
     if (ending == ".npy") write_array(path, histogram.counts, shape_of(histogram));
-    if (ending == ".csv") write_text_file(path, format_csv(histogram));
+    if (ending == ".csv") write_text_file(path, format_csv(histogram, other));
   });
   files.keep();
-  std::cout << "wrote " << single_line(output) << ": " << describe_axes(histogram) << ", "
+  std::cout << "wrote " << single_line(output) << ": " << describe_axes(histogram, other) << ", "
             << describe_shares(histogram.counts) << "\n";
 }
 
@@ -139,7 +142,9 @@ void write_histogram(const std::string& output, const AnyHistogram& histogram, b
 
 void run_histogram(const HistogramCommandOptions& options) {
   require_consistent(options);
-  const SceneInput input = load_scene_input(options.input);
+  SceneInput input = load_scene_input(options.input);
+  input.read.others.clear();
+  if (options.other_array) input.read.others.push_back(*options.other_array);
   const std::string output = choose_output(options, input);
   ProgressLine line(true);
   const Dataset dataset = read_dataset(input.data_path, input.read, line.progress());
@@ -150,14 +155,15 @@ void run_histogram(const HistogramCommandOptions& options) {
   line.clear();
 
   const HistogramOptions chosen = choose_options(options, body);
-  const bool is_value = options.kind == HistogramKind::kValue;
-  const bool use_logarithm = options.use_logarithm.value_or(!is_value);
+  const bool use_logarithm = options.use_logarithm.value_or(options.kind != HistogramKind::kValue);
   std::visit(
       [&](const auto& prepared) {
-        if (is_value)
-          write_histogram(output, make_value_histogram(prepared, chosen), use_logarithm);
+        if (options.kind == HistogramKind::kValue)
+          write_histogram(output, make_value_histogram(prepared, chosen), "", use_logarithm);
+        else if (options.kind == HistogramKind::kGradient)
+          write_histogram(output, make_gradient_histogram(prepared, chosen), "gradient", use_logarithm);
         else
-          write_histogram(output, make_gradient_histogram(prepared, chosen), use_logarithm);
+          write_histogram(output, make_joint_histogram(prepared, 0, chosen), "other", use_logarithm);
       },
       body);
 }

@@ -174,18 +174,18 @@ Image draw_histogram(const Histogram& histogram, bool use_logarithm) {
 }
 
 Image draw_histogram(const Histogram2D& histogram, bool use_logarithm) {
-  Plot plot(axis_pixels(histogram.bins, kWantedWidth), axis_pixels(histogram.gradient_bins, kWantedHeight));
+  Plot plot(axis_pixels(histogram.bins, kWantedWidth), axis_pixels(histogram.other_bins, kWantedHeight));
   const ShareScale scale(histogram.counts, use_logarithm);
   PresetOptions unit;
   unit.range = {0.0, 1.0};
   const OpticalFunction colors = make_optical_function(make_preset("inferno:constant=0.5", unit), 1.0);
   add_value_ticks(plot, histogram.range, false);
-  const double height = histogram.gradient_range.max - histogram.gradient_range.min;
-  for (const double tick : make_ticks(histogram.gradient_range))
-    plot.add_tick_left(height > 0.0 ? (tick - histogram.gradient_range.min) / height : 0.5, tick, false);
+  const double height = histogram.other_range.max - histogram.other_range.min;
+  for (const double tick : make_ticks(histogram.other_range))
+    plot.add_tick_left(height > 0.0 ? (tick - histogram.other_range.min) / height : 0.5, tick, false);
   for (int y = 0; y < plot.height(); ++y)
     for (int x = 0; x < plot.width(); ++x) {
-      const BinSpan rows = bins_at(y, plot.height(), histogram.gradient_bins);
+      const BinSpan rows = bins_at(y, plot.height(), histogram.other_bins);
       const BinSpan columns = bins_at(x, plot.width(), histogram.bins);
       double share = 0.0;
       for (std::size_t row = rows.begin; row < rows.end; ++row)

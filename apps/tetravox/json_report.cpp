@@ -115,7 +115,7 @@ std::string format_statistics(const PictureStatistics& statistics) {
   json["kind"] = grid ? "grid" : "mesh";
   if (grid) json["dimensions"] = grid->dimensions;
   json["source"] = name_of(statistics.settings.source.value_or(grid ? Source::kMarch : Source::kWalk));
-  json["integrator"] = name_of(statistics.settings.integrator);
+  json["integrator"] = statistics.render.integrator;
   if (grid) json["filter"] = name_of(statistics.settings.filter);
   json["resolution"] = {statistics.settings.width, statistics.settings.height};
   json["array"] = statistics.array;

@@ -4,6 +4,7 @@
 
 #include "tetravox/grid.h"
 #include "tetravox/io.h"
+#include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
 #include "tetravox/transfer_function.h"
 
@@ -62,6 +63,8 @@ void run_list(const ListOptions& options) {
                 << with_title("Filters of grids (--filter):", filter_names())
                 << with_title("Gradients (--gradient):", gradient_method_names())
                 << with_title("Shadows (--shadows):", shadow_kind_names())
+                << with_title("Variables of functions (--variables):", variable_kind_names())
+                << with_title("Widgets (--widget):", widget_shape_names())
                 << with_title("Opacity weights (--opacity-weight):", opacity_weight_names())
                 << with_title("Instruction sets (--instruction-set):", instruction_set_rows());
       break;

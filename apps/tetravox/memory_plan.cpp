@@ -1,5 +1,6 @@
 #include "apps/tetravox/memory_plan.h"
 
+#include "apps/tetravox/body.h"
 #include "apps/tetravox/text.h"
 
 #include "tetravox/error.h"
@@ -8,22 +9,28 @@
 #include "tetravox/mesh.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace tetravox::tool {
 
 MemoryPlan plan_memory(const Dataset& dataset, const RenderSettings& settings) {
   MemoryPlan plan;
-  const auto plan_preparing = [&plan](const MemoryEstimate& prepare) {
-    plan.prepare = prepare.peak;
-    plan.resident = prepare.resident;
+  const auto plan_preparing = [&plan](const MemoryEstimate& prepare, std::size_t fields) {
+    plan.prepare = prepare.peak * fields;
+    plan.resident = prepare.resident * fields;
   };
   if (dataset.is_grid()) {
-    plan_preparing(estimate_prepare_memory(dataset.grid));
-    plan.values = dataset.grid.values.size_bytes();
+    plan_preparing(estimate_prepare_memory(dataset.grid), 1 + dataset.other_grids.size());
+    plan.values = value_bytes(dataset);
     plan.render = estimate_render_memory(dataset.grid, settings);
+    // Further fields have copies of their own where the filter asks for them.
+    RenderSettings unfiltered = settings;
+    unfiltered.filter = {};
+    for (const GridData& other : dataset.other_grids)
+      plan.render += estimate_render_memory(other, settings) - estimate_render_memory(other, unfiltered);
   } else {
     const MeshData& mesh = dataset.mesh;
-    plan_preparing(estimate_prepare_memory(mesh));
+    plan_preparing(estimate_prepare_memory(mesh), 1);
     // A boundary of as many faces as there are cells is far beyond what meshes have.
     plan.render = estimate_render_memory(mesh.point_count(), mesh.cell_count(), settings);
   }

@@ -140,6 +140,41 @@ std::array<double, 3> parse_spacing(const std::string& option, const std::string
   return {(*values)[0], (*values)[1], (*values)[2]};
 }
 
+ArrayRequest parse_array(const std::string& option, const std::string& text) {
+  ArrayRequest request{text, {}, {}};
+  const std::size_t colon = text.rfind(':');
+  if (colon != std::string::npos) {
+    const std::string component = text.substr(colon + 1);
+    if (component == "magnitude" || parse_whole<int>(component)) {
+      request.name = text.substr(0, colon);
+      request.component = parse_component(option, component);
+    }
+  }
+  if (request.name.empty()) refuse(option, text, "the name of an array");
+  return request;
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t end = text.find(separator); end != std::string::npos; end = text.find(separator, begin)) {
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  parts.push_back(text.substr(begin));
+  return parts;
+}
+
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
+                                  const std::string& what) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != count)
+    throw UsageError(option + ": '" + text + "' is not " + std::to_string(count) + " numbers: " + what);
+  std::vector<double> numbers;
+  for (const std::string& part : parts) numbers.push_back(parse_number(option, part));
+  return numbers;
+}
+
 std::size_t parse_choice(const std::string& option, const std::string& text, const std::vector<std::string>& names) {
   const auto found = std::find(names.begin(), names.end(), text);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());

@@ -7,6 +7,7 @@
 #include "tetravox/scene.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -42,6 +43,13 @@ int parse_component(const std::string& option, const std::string& text);
 std::array<std::uint32_t, 3> parse_dimensions(const std::string& option, const std::string& text);
 /// "X,Y,Z", numbers above 0.
 std::array<double, 3> parse_spacing(const std::string& option, const std::string& text);
+/// "NAME" or "NAME:COMPONENT"; a colon is part of the name where neither a number nor "magnitude" follows.
+ArrayRequest parse_array(const std::string& option, const std::string& text);
+/// Exactly `count` numbers with commas between; `what` says what they are.
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
+                                  const std::string& what);
+/// The parts of a text between `separator`s.
+std::vector<std::string> split(const std::string& text, char separator);
 /// One of `names`: its index.
 std::size_t parse_choice(const std::string& option, const std::string& text, const std::vector<std::string>& names);
 

@@ -4,6 +4,7 @@
 #include "apps/tetravox/option_adding.h"
 #include "apps/tetravox/options_effects.h"
 #include "apps/tetravox/options_histogram.h"
+#include "apps/tetravox/options_multidimensional.h"
 #include "apps/tetravox/text.h"
 
 #include "tetravox/error.h"
@@ -40,6 +41,8 @@ constexpr char kExamples[] = R"(Examples:
   tetravox render scene.json --resolution 1920,1080 the scene in a file, larger
   tetravox render engine.png -o again.png           the scene that a picture holds
   tetravox info engine.vtu                          cells, arrays, bounds, memory
+  tetravox render head.nii.gz --variables gradient  where materials meet: opacity by value and gradient
+  tetravox render engine.vtu --array density --color-array pressure
   tetravox histogram engine.vtu                     how much volume each value takes: engine-histogram.png
   tetravox list presets                             names for --transfer-function
 )";
@@ -249,6 +252,7 @@ Parser::Parser() {
   add_input(*render, render_options.input);
   add_raw_layout(*render, render_options.input);
   add_function(*render, render_options.function);
+  add_multidimensional(*render, render_options.multidimensional);
   add_camera(*render, render_options.camera);
   add_picture(*render, render_options);
   add_method(*render, render_options);
@@ -262,7 +266,7 @@ Parser::Parser() {
   app.option_defaults()->group("OPTIONS");
   info->add_flag("--json", info_options.use_json, "Print JSON");
 
-  histogram = add_command(app, "histogram", "Count the volume of each value, and of each gradient");
+  histogram = add_command(app, "histogram", "Count the volume of each value, gradient or pair of values");
   add_input(*histogram, histogram_options.input);
   add_raw_layout(*histogram, histogram_options.input);
   add_histogram(*histogram, histogram_options);

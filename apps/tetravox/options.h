@@ -7,6 +7,7 @@
 #include "tetravox/scene.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -38,6 +39,23 @@ struct FunctionOptions {
   std::optional<double> unit_distance;
 
   bool changes_values() const { return range || use_logarithm || invert; }
+};
+
+/// A widget, and how many variables it was given for.
+struct WidgetOption {
+  Widget widget;
+  std::size_t variables = 2;
+};
+
+/// Functions of several variables, and colours by another array: put over those of the scene.
+struct MultidimensionalOptions {
+  std::optional<std::vector<Variable>> variables;  ///< beside the value; an empty list drops the scene's function
+  std::vector<WidgetOption> widgets;
+  std::string table;
+  std::optional<int> resolution;
+  std::optional<ArrayRequest> color_array;  ///< without a name: drops the scene's
+  std::string color_function;               ///< file or preset
+  std::optional<ValueRange> color_range;
 };
 
 struct CameraOptions {
@@ -98,6 +116,7 @@ struct EffectOptions {
 struct RenderOptions {
   InputOptions input;
   FunctionOptions function;
+  MultidimensionalOptions multidimensional;
   CameraOptions camera;
   MethodOptions method;
   EffectOptions effects;
@@ -121,17 +140,19 @@ struct InfoOptions {
 
 /// What a histogram counts.
 enum class HistogramKind {
-  kValue,    ///< the volume that each value takes
-  kGradient  ///< by value and gradient magnitude
+  kValue,     ///< the volume that each value takes
+  kGradient,  ///< by value and gradient magnitude
+  kJoint      ///< by value and the value of another array
 };
 
 struct HistogramCommandOptions {
   InputOptions input;
   std::string output;  ///< empty: the input's name with "-histogram.png" in the current directory
   HistogramKind kind = HistogramKind::kValue;
-  std::optional<bool> use_logarithm;  ///< of the counts; empty: for kGradient only
-  std::optional<int> bins, gradient_bins;
-  std::optional<ValueRange> range, gradient_range;
+  std::optional<ArrayRequest> other_array;  ///< of kJoint
+  std::optional<bool> use_logarithm;        ///< of the counts; empty: for histograms of two variables only
+  std::optional<int> bins, other_bins;
+  std::optional<ValueRange> range, other_range;
 };
 
 struct ListOptions {

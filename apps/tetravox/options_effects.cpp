@@ -10,29 +10,6 @@
 namespace tetravox::tool {
 namespace {
 
-/// The parts of a text between `separator`s.
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (std::size_t end = text.find(separator); end != std::string::npos; end = text.find(separator, begin)) {
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  parts.push_back(text.substr(begin));
-  return parts;
-}
-
-/// Exactly `count` numbers with commas between.
-std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
-                                  const std::string& what) {
-  const std::vector<std::string> parts = split(text, ',');
-  if (parts.size() != count)
-    throw UsageError(option + ": '" + text + "' is not " + std::to_string(count) + " numbers: " + what);
-  std::vector<double> numbers;
-  for (const std::string& part : parts) numbers.push_back(parse_number(option, part));
-  return numbers;
-}
-
 /// "headlight", "directional:x,y,z", "point:x,y,z", each with ":r,g,b" and "*intensity" behind it.
 Light parse_light(const std::string& option, const std::string& text) {
   Light light;

@@ -14,6 +14,7 @@ constexpr char kHistogramExamples[] = R"(Examples:
   tetravox histogram engine.vtu                     engine-histogram.png: how much volume each value takes
   tetravox histogram head.nii.gz --counts log       rare values can be seen too
   tetravox histogram head.nii.gz --kind gradient    materials are spots at the bottom, boundaries are arches
+  tetravox histogram engine.vtu --kind joint --array pressure --other-array density
   tetravox histogram engine.vtu -o engine.csv --bins 100 --range -0.5,1
 )";
 
@@ -26,12 +27,14 @@ void add_histogram(CLI::App& app, HistogramCommandOptions& options) {
         if (text.empty()) throw UsageError(option + ": the text is empty");
         options.output = text;
       });
-  add(app, "--kind", "value|gradient", "Volume by value, or by value and gradient magnitude (default: value)",
+  add(app, "--kind", "value|gradient|joint",
+      "Volume by value (default), by value and gradient magnitude, or by value and --other-array",
       [&options](const std::string& option, const std::string& text) {
-        options.kind =
-            parse_choice(option, text, {"value", "gradient"}) == 0 ? HistogramKind::kValue : HistogramKind::kGradient;
+        options.kind = static_cast<HistogramKind>(parse_choice(option, text, {"value", "gradient", "joint"}));
       });
-  add(app, "--counts", "linear|log", "How a picture shows volumes (default: linear; of gradients: log)",
+  add(app, "--other-array", "NAME[:COMPONENT]", "The second axis of --kind joint",
+      store(options.other_array, parse_array));
+  add(app, "--counts", "linear|log", "How a picture shows volumes (default: linear; of two axes: log)",
       [&options](const std::string& option, const std::string& text) {
         options.use_logarithm = parse_choice(option, text, {"linear", "log"}) == 1;
       });
@@ -39,15 +42,16 @@ void add_histogram(CLI::App& app, HistogramCommandOptions& options) {
       [&options](const std::string& option, const std::string& text) {
         options.bins = static_cast<int>(parse_integer(option, text, 1, kLargestBinCount));
       });
-  add(app, "--gradient-bins", "N", "Bins of the gradient magnitude (default: 256)",
+  add(app, "--other-bins,--gradient-bins", "N", "Bins of the gradient magnitude, or of the other array (default: 256)",
       [&options](const std::string& option, const std::string& text) {
-        options.gradient_bins = static_cast<int>(parse_integer(option, text, 1, kLargestGradientBinCount));
+        options.other_bins = static_cast<int>(parse_integer(option, text, 1, kLargestGradientBinCount));
       });
   add(app, "--range", "A,B", "Values to count (default: all)",
       [&options](const std::string& option, const std::string& text) { options.range = parse_range(option, text); });
-  add(app, "--gradient-range", "A,B", "Gradient magnitudes to count, per world length (default: all but outliers)",
+  add(app, "--other-range,--gradient-range", "A,B",
+      "Gradient magnitudes per world length (default: all but outliers), or values of the other array, to count",
       [&options](const std::string& option, const std::string& text) {
-        options.gradient_range = parse_range(option, text);
+        options.other_range = parse_range(option, text);
       });
   app.footer(kHistogramExamples);
 }

@@ -6,6 +6,7 @@
 #include "apps/tetravox/json_report.h"
 #include "apps/tetravox/memory_plan.h"
 #include "apps/tetravox/method_choice.h"
+#include "apps/tetravox/multidimensional_choice.h"
 #include "apps/tetravox/output_files.h"
 #include "apps/tetravox/progress_line.h"
 #include "apps/tetravox/scene_input.h"
@@ -21,6 +22,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <utility>
 
 namespace tetravox::tool {
@@ -65,6 +67,8 @@ struct Job {
   DatasetInfo info;
   Body body;
   CompletedScene completed;
+  std::optional<OpticalTable> table;      ///< in place of the function of the value
+  std::optional<OpticalFunction> colors;  ///< of another array
   SceneParts parts;
   PictureStatistics statistics;
 };
@@ -106,6 +110,11 @@ void override_scene(const RenderOptions& options, Scene& scene) {
   scene.background = options.background.value_or(scene.background);
   override_method(options.method, settings);
   override_effects(options.effects, scene);
+  override_multidimensional(options.multidimensional, options.function, scene);
+  if (options.effects.shows_volume && !*options.effects.shows_volume) {
+    scene.multidimensional.reset();
+    scene.color_by.reset();
+  }
   settings.wants_depth = !options.output_depth.empty();
 }
 
@@ -169,11 +178,13 @@ void load_body(const RenderOptions& options, Job& job, Talk& talk) {
 void complete_job(const RenderOptions& options, Job& job) {
   Stopwatch watch;
   Scene& scene = job.input.scene;
-  choose_function(options.function, job.body, scene);
+  job.table = choose_table(options.multidimensional, options.function, job.body, scene);
+  if (!job.table) choose_function(options.function, job.body, scene);
+  job.colors = choose_colors(options.multidimensional, job.body, scene);
   job.completed = complete_scene(scene, job.body);
   job.completed.camera = override_camera(options.camera, job.completed.camera);
   complete_effects(options.effects, job.completed, scene);
-  scene.transfer_function = job.completed.transfer_function;
+  if (!scene.multidimensional) scene.transfer_function = job.completed.transfer_function;
   scene.camera = job.completed.camera;
   job.statistics.choose_seconds = watch.lap();
 }
@@ -183,6 +194,8 @@ Image draw(const RenderOptions& options, Job& job, Talk& talk) {
   job.parts.attach(renderer);
   Stopwatch watch;
   renderer.set_transfer_function(job.completed.optical_function);
+  if (job.table) renderer.set_multidimensional_function(*job.table);
+  if (job.colors) renderer.set_color_function(0, *job.colors);
   job.statistics.transfer_function_seconds = watch.lap();
   const RenderSettings& settings = job.input.scene.settings;
   Image image;
@@ -259,6 +272,7 @@ void run_render(const RenderOptions& options) {
   job.input = load_scene_input(options.input);
   job.output = choose_output(options, job.input);
   override_scene(options, job.input.scene);
+  job.input.read.others = other_arrays(job.input.scene);
   job.parts.load(job.input.scene, job.input.read.timeout, talk.line.progress());
   load_body(options, job, talk);
   complete_job(options, job);

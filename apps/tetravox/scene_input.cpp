@@ -90,6 +90,7 @@ template <class Replace>
 void replace_paths(Scene& scene, const Replace& replace) {
   for (ClipShape& shape : scene.settings.clipping.shapes)
     if (auto* volume = std::get_if<ClipVolume>(&shape.shape)) volume->file = replace(volume->file);
+  if (scene.multidimensional) scene.multidimensional->table_file = replace(scene.multidimensional->table_file);
 }
 
 }  // namespace
@@ -125,6 +126,7 @@ SceneInput load_scene_input(const InputOptions& options) {
     input.data_path = options.grid_file;
   }
   input.read.array = data.array;
+  input.read.others = other_arrays(input.scene);
   input.read.time = data.time;
   input.read.raw = data.raw;
   input.read.grid_file = solution;

@@ -83,6 +83,8 @@ struct GridShape {
   std::array<double, 3> spacing{1, 1, 1};                      ///< positive
   std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row major, invertible; column a: where axis a points
   std::array<std::vector<double>, 3> coordinates;  ///< uneven axes: [dimensions[a]], strictly ascending; else empty
+
+  bool operator==(const GridShape&) const = default;
 };
 
 /// What is known of one array without holding its values.
@@ -188,16 +190,23 @@ struct ArrayRequest {
 /// @throws Error (kInvalidArgument) that lists what there is when the request cannot be met; (kNothingToDraw) without
 /// arrays.
 std::size_t choose_array(const DatasetInfo& info, const ArrayRequest& request);
+/// The same for an array that is wanted beside `first`: it is named, and has the association of `first`.
+/// @throws Error (kInvalidArgument) that says which arrays do not go together.
+std::size_t choose_other_array(const DatasetInfo& info, const ArrayRequest& request, const ArrayInfo& first);
+
+/// The component of `array` that a request means: the only one, the one asked for, or `kMagnitude`.
+int choose_component(const ArrayInfo& array, const ArrayRequest& request);
 
 /// Makes an embedded dataset: a mesh ("sphere", "buckyball", "duct", with optional "?cells=N": about N cells), or a
-/// grid
-/// ("marschner-lobb", "hydrogen", "turbulence", with optional "?size=N&type=uint8": N^3 points of that number type).
+/// grid ("marschner-lobb", "hydrogen", "turbulence", with optional "?size=N&type=uint8": N^3 points of that number
+/// type).
 /// `name` may carry the prefix "builtin:". Deterministic. Sources and formulas: src/mesh/builtin.cpp and
 /// src/grid/builtin.cpp.
 /// @throws Error (kInvalidArgument) that lists the names there are; (kOutOfMemory).
 Dataset make_builtin(const std::string& name);
-/// The same with the array that `request` asks for ("duct" has several).
-Dataset make_builtin(const std::string& name, const ArrayRequest& request);
+/// The same with the array that `request` asks for ("duct" and "hydrogen" have several), and with `others` beside it.
+Dataset make_builtin(const std::string& name, const ArrayRequest& request,
+                     const std::vector<ArrayRequest>& others = {});
 
 /// Names and one-line descriptions of the embedded datasets.
 std::vector<std::pair<std::string, std::string>> builtin_names();

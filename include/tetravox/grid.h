@@ -80,7 +80,11 @@ struct PreparedGrid {
 /// or without a finite value, kOutOfMemory, kCancelled.
 PreparedGrid prepare_grid(const GridData& grid, const Progress& progress = {});
 
-/// Bytes that `prepare_grid` holds at its peak (values not counted), and bytes of what it adds to the values.
+/// The same with `others` of the same shape and association beside it: `PreparedGrid::others`, in this order.
+PreparedGrid prepare_grid(const GridData& grid, const std::vector<GridData>& others, const Progress& progress = {});
+
+/// Bytes that `prepare_grid` holds at its peak (values not counted), and bytes of what it adds to the values; for each
+/// field.
 MemoryEstimate estimate_prepare_memory(const GridData& grid);
 
 }  // namespace tetravox

@@ -19,8 +19,12 @@
 
 namespace tetravox {
 
+/// Further arrays that can be read beside the one that is drawn.
+inline constexpr std::size_t kMostOtherArrays = 8;
+
 struct ReadOptions {
   ArrayRequest array;
+  std::vector<ArrayRequest> others;  ///< further fields, named: `MeshData::others`, `Dataset::other_grids`, as ordered
   TimeRequest time;
   RawLayout raw;                   ///< RAW files only
   std::string grid_file;           ///< PLOT3D: the solution (Q) file that goes with the grid at `path`
@@ -36,6 +40,17 @@ Dataset read_dataset(const std::string& path, const ReadOptions& options = {}, c
 
 /// Formats that can be read: name, and file endings with a remark.
 std::vector<std::pair<std::string, std::string>> reader_names();
+
+/// Colours and opacities of a function of several variables, as `make_optical_table` takes them.
+struct FunctionTable {
+  std::vector<std::size_t> sizes;  ///< entries along each variable
+  std::vector<float> rgba;         ///< [..][4], first variable fastest; not premultiplied
+};
+
+/// Reads a table: an image (.png, .exr) of two variables, the first to the right and the second upwards, alpha as
+/// opacity; or an .npy file of float32, float64 (from 0 to 1) or uint8 (from 0 to 255), [n2][n1][4] or [n3][n2][n1][4].
+/// @throws Error that names the file: kFileNotFound, kBadFile, kUnsupported, kInvalidArgument for other endings.
+FunctionTable read_function_table(const std::string& path, std::size_t variables);
 
 struct WriteOptions {
   Color background{0, 0, 0};

@@ -96,8 +96,9 @@ MemoryEstimate estimate_prepare_memory(const MeshData& mesh);
 ///
 /// Quadrilaterals are split from their lowest point, cells joined to their lowest point ("pulling": Dompierre, Labbe,
 /// Vallet, Camarero 1999); quadratic cells are first split at their mid-edge nodes. Points that coincide exactly
-/// and carry equal values become one. Degenerate, inverted, duplicated and overlapping cells are made harmless and
-/// counted. Deterministic: the same bytes for any number of threads.
+/// and carry equal values in all fields become one; a cell that lacks a value of any field is left out. Degenerate,
+/// inverted, duplicated and overlapping cells are made harmless and counted. Deterministic: the same bytes for any
+/// number of threads.
 /// @throws Error: kBadFile for ids or offsets out of range, kNothingToDraw when no cell is left (says why),
 /// kOutOfMemory,
 ///         kUnsupported above 2^32 - 2 tetrahedra, kCancelled.

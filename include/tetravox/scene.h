@@ -5,12 +5,14 @@
 #include "tetravox/camera.h"
 #include "tetravox/dataset.h"
 #include "tetravox/grid.h"
+#include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
 #include "tetravox/transfer_function.h"
 
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tetravox {
 
@@ -41,11 +43,17 @@ struct SceneData {
 
 struct Scene {
   SceneData data;
-  std::optional<TransferFunction> transfer_function;  ///< empty: from the data's histogram
-  std::optional<Camera> camera;                       ///< empty: an oblique view of everything
+  std::optional<TransferFunction> transfer_function;         ///< empty: from the data's histogram
+  std::optional<MultidimensionalFunction> multidimensional;  ///< in its place
+  std::optional<ColorBy> color_by;                           ///< colours in place of those of `transfer_function`
+  std::optional<Camera> camera;                              ///< empty: an oblique view of everything
   Color background{0, 0, 0};
   RenderSettings settings;  ///< `threads` and `instruction_set` are not part of a scene file: no pixel depends on them
 };
+
+/// The arrays that a scene needs beside the one that is drawn, as `ReadOptions::others` takes them: of the variables
+/// in their order, then the one that colours follow.
+std::vector<ArrayRequest> other_arrays(const Scene& scene);
 
 /// Parses a scene file's text.
 /// @throws Error (kBadFile) that names `source_name`, the key or the place, and what is wrong. Unknown keys are an

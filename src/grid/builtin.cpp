@@ -14,20 +14,23 @@
 namespace tetravox::grid {
 namespace {
 
-/// An embedded grid: how it is called, how it is made.
+using MakeField = BuiltinField (*)(const BuiltinGridRequest& request);
+
+/// An embedded grid: how it is called, how its fields are made.
 struct Builtin {
   BuiltinGridEntry entry;
-  BuiltinField (*make_field)(const BuiltinGridRequest& request);
+  std::vector<MakeField> make_fields;
 };
 
 const std::vector<Builtin>& builtins() {
   static const std::vector<Builtin> all = {
       {{"marschner-lobb", "the test signal of Marschner and Lobb", 41, ScalarType::kFloat32, false},
-       [](const BuiltinGridRequest& request) { return make_marschner_lobb_field(request.size); }},
+       {[](const BuiltinGridRequest& request) { return make_marschner_lobb_field(request.size); }}},
       {{"hydrogen", "an orbital of a hydrogen atom: two lobes and a ring", 16, ScalarType::kUint8, false},
-       [](const BuiltinGridRequest& request) { return make_hydrogen_field(request.size); }},
+       {[](const BuiltinGridRequest& request) { return make_hydrogen_field(request.size); },
+        [](const BuiltinGridRequest& request) { return make_hydrogen_wave(request.size); }}},
       {{"turbulence", "octaves of band-limited noise", 128, ScalarType::kUint8, true},
-       [](const BuiltinGridRequest& request) { return make_turbulence_field(request.size, request.seed); }}};
+       {[](const BuiltinGridRequest& request) { return make_turbulence_field(request.size, request.seed); }}}};
   return all;
 }
 
@@ -72,6 +75,19 @@ GridShape make_cube(std::uint32_t size, const ValueRange& extent) {
   return shape;
 }
 
+GridData make_grid(const BuiltinField& field, const BuiltinGridRequest& request) {
+  const std::size_t size = request.size, bytes = size * size * size * scalar_type_size(request.type);
+  const std::shared_ptr<std::byte[]> values = std::make_unique_for_overwrite<std::byte[]>(bytes);
+  visit_type(request.type, [&](auto any) { fill_values(field, size, reinterpret_cast<decltype(any)*>(values.get())); });
+  GridData grid;
+  grid.shape = make_cube(request.size, field.extent);
+  grid.type = request.type;
+  grid.values = {values.get(), bytes};
+  grid.array_name = field.array_name;
+  grid.storage = values;
+  return grid;
+}
+
 }  // namespace
 
 const std::vector<BuiltinGridEntry>& builtin_grids() {
@@ -88,22 +104,20 @@ Dataset make_builtin_grid(const BuiltinGridEntry& entry, const BuiltinGridReques
                                     [&](const Builtin& one) { return one.entry.name == entry.name; });
   TETRAVOX_CHECK_LT(std::distance(builtins().begin(), builtin), std::ssize(builtins()));
   const std::size_t size = request.size, count = size * size * size;
-  const std::size_t bytes = count * scalar_type_size(request.type);
+  const std::size_t bytes = count * scalar_type_size(request.type) * builtin->make_fields.size();
   // Fields need tables besides: of the slices, and of the coefficients of noise.
   support::require_memory(bytes + count / 8 + (std::uint64_t{32} << 20),
                           source + " with " + std::to_string(size) + "^3 points");
-  const BuiltinField field = builtin->make_field(request);
-  const std::shared_ptr<std::byte[]> values = std::make_unique_for_overwrite<std::byte[]>(bytes);
-  visit_type(request.type, [&](auto any) { fill_values(field, size, reinterpret_cast<decltype(any)*>(values.get())); });
   Dataset dataset;
-  dataset.grid.shape = make_cube(request.size, field.extent);
-  dataset.grid.type = request.type;
-  dataset.grid.values = {values.get(), bytes};
-  dataset.grid.array_name = field.array_name;
-  dataset.grid.storage = values;
-  dataset.info.source = source;
-  dataset.info.format = "embedded";
-  describe_grid(dataset.grid, dataset.info);
+  DatasetInfo& info = dataset.info;
+  info.source = source;
+  info.format = "embedded";
+  dataset.grid = make_grid(builtin->make_fields.front()(request), request);
+  describe_grid(dataset.grid, info);
+  for (std::size_t i = 1; i < builtin->make_fields.size(); ++i) {
+    dataset.other_grids.push_back(make_grid(builtin->make_fields[i](request), request));
+    info.arrays.push_back(describe_values(dataset.other_grids.back()));
+  }
   return dataset;
 }
 

@@ -32,8 +32,9 @@ struct BuiltinGridRequest {
   std::uint64_t seed = 0;
 };
 
-/// Makes the grid with this entry's name. Its field has values in [0, 1]; integers are that stretched over all that
-/// their type can hold, rounded to the nearest. Messages and the summary call it `source`.
+/// Makes the grid with this entry's name: its first field in `grid`, the rest in `other_grids`, in the order of its
+/// arrays. They have values in [0, 1]; integers are that stretched over all that their type can hold, rounded to the
+/// nearest. Messages and the summary call it `source`.
 /// @throws Error (kOutOfMemory) before anything is allocated.
 Dataset make_builtin_grid(const BuiltinGridEntry& entry, const BuiltinGridRequest& request, const std::string& source);
 
@@ -52,6 +53,9 @@ BuiltinField make_marschner_lobb_field(std::uint32_t size);
 /// Probability density of the 3d orbital with m = 0 of a hydrogen atom, two lobes and a ring, as a part of its largest
 /// value among the points: (3 z^2 - r^2)^2 exp(-2 r / 3), in Bohr radii.
 BuiltinField make_hydrogen_field(std::uint32_t size);
+
+/// The wave function whose square that is, (3 z^2 - r^2) exp(-r / 3): -1 to 1 of its largest magnitude as 0 to 1.
+BuiltinField make_hydrogen_wave(std::uint32_t size);
 
 /// A sum of octaves of band-limited noise on [0, 1]^3, each with half the amplitude of the one before, stretched such
 /// that the points' values fill [0, 1]. The same on every machine, for any number of threads.

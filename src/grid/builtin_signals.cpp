@@ -26,6 +26,11 @@ double eval_orbital(double x, double y, double z) {
   return lobes * lobes * std::exp(-2.0 / 3.0 * std::sqrt(square));
 }
 
+double eval_wave(double x, double y, double z) {
+  const double square = x * x + y * y + z * z;
+  return (3.0 * z * z - square) * std::exp(-std::sqrt(square) / 3.0);
+}
+
 /// The largest density among the points, all of which have a twin in one octant. Not 0 even where they all miss it.
 double largest_density(const std::vector<double>& places) {
   double largest = std::numeric_limits<double>::min();
@@ -40,6 +45,24 @@ std::vector<double> places_in(const ValueRange& extent, std::uint32_t size) {
   std::vector<double> places(size);
   for (std::size_t i = 0; i < places.size(); ++i) places[i] = place_in(extent, i, size);
   return places;
+}
+
+/// A field of the atom: `eval(x, y, z, largest_density)`, in [0, 1].
+template <class Eval>
+BuiltinField make_atom_field(const char* name, std::uint32_t size, const Eval& eval) {
+  BuiltinField field;
+  field.array_name = name;
+  field.extent = {-kOrbitalReach, kOrbitalReach};
+  const std::vector<double> places = places_in(field.extent, size);
+  const double largest = largest_density(places);
+  field.visit_slice = [places, largest, eval](std::size_t k, const auto& write) {
+    std::vector<double> row(places.size());
+    for (const double y : places) {
+      for (std::size_t i = 0; i < row.size(); ++i) row[i] = eval(places[i], y, places[k], largest);
+      write(row);
+    }
+  };
+  return field;
 }
 
 }  // namespace
@@ -72,20 +95,15 @@ BuiltinField make_marschner_lobb_field(std::uint32_t size) {
 }
 
 BuiltinField make_hydrogen_field(std::uint32_t size) {
-  BuiltinField field;
-  field.array_name = "density";
-  field.extent = {-kOrbitalReach, kOrbitalReach};
-  const std::vector<double> places = places_in(field.extent, size);
-  const double largest = largest_density(places);
-  field.visit_slice = [places, largest](std::size_t k, const auto& write) {
-    std::vector<double> row(places.size());
-    for (const double y : places) {
-      for (std::size_t i = 0; i < row.size(); ++i)
-        row[i] = std::min(eval_orbital(places[i], y, places[k]) / largest, 1.0);
-      write(row);
-    }
-  };
-  return field;
+  return make_atom_field("density", size, [](double x, double y, double z, double largest_density) {
+    return std::min(eval_orbital(x, y, z) / largest_density, 1.0);
+  });
+}
+
+BuiltinField make_hydrogen_wave(std::uint32_t size) {
+  return make_atom_field("wave", size, [](double x, double y, double z, double largest_density) {
+    return std::clamp(0.5 + 0.5 * eval_wave(x, y, z) / std::sqrt(largest_density), 0.0, 1.0);
+  });
 }
 
 }  // namespace tetravox::grid

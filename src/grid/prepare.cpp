@@ -37,6 +37,16 @@ PreparedGrid prepare_grid(const GridData& grid, const Progress& progress) {
   return prepared;
 }
 
+PreparedGrid prepare_grid(const GridData& grid, const std::vector<GridData>& others, const Progress& progress) {
+  for (const GridData& other : others)
+    if (other.shape != grid.shape || other.association != grid.association)
+      throw Error(ErrorCode::kInvalidArgument, "'" + other.array_name + "' does not lie on the points or cells of '" +
+                                                   grid.array_name + "': give arrays of one grid");
+  PreparedGrid prepared = prepare_grid(grid, progress);
+  for (const GridData& other : others) prepared.others.push_back(prepare_grid(other, progress));
+  return prepared;
+}
+
 MemoryEstimate estimate_prepare_memory(const GridData& grid) {
   const std::uint64_t bytes = count_bricks(grid.shape) * kBytesOfBrick + (1u << 20);
   return {bytes, bytes};

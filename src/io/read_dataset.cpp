@@ -18,19 +18,33 @@ namespace {
 
 constexpr const char* kBuiltinPrefix = "builtin:";
 
-/// The component of `array` that a request means.
-int pick_component(const ArrayInfo& array, const ArrayRequest& request) {
-  return array.components == 1 ? 0 : request.component.value_or(kMagnitude);
+void require_others(const std::vector<ArrayRequest>& others) {
+  if (others.size() > kMostOtherArrays)
+    throw Error(ErrorCode::kInvalidArgument, std::to_string(others.size()) + " further arrays are more than the " +
+                                                 std::to_string(kMostOtherArrays) + " that can be read at a time");
+  for (const ArrayRequest& other : others)
+    if (other.name.empty()) throw Error(ErrorCode::kInvalidArgument, "a further array has no name: name it");
 }
 
-/// What was made or read here, with the field that is asked for.
-Dataset choose_field(Dataset dataset, const ReadOptions& options, const std::string& path) {
+/// The one array of a RAW file, of which each component is a field.
+Dataset choose_raw_fields(Dataset dataset, const ReadOptions& options) {
   const ArrayInfo& array = dataset.info.arrays.at(choose_array(dataset.info, options.array));
-  (dataset.is_grid() ? dataset.grid.component : dataset.mesh.component) = pick_component(array, options.array);
+  dataset.grid.component = choose_component(array, options.array);
+  for (const ArrayRequest& other : options.others) {
+    choose_other_array(dataset.info, other, array);
+    dataset.other_grids.push_back(dataset.grid);
+    dataset.other_grids.back().component = choose_component(array, other);
+  }
+  return dataset;
+}
+
+/// What was made or read here, without what is not asked for.
+Dataset finish(Dataset dataset, const ReadOptions& options, const std::string& path) {
   dataset.info.time_index = io::pick_time(dataset.info.times, options.time, path);
   if (options.only_info) {
     dataset.mesh = {};
     dataset.grid = {};
+    dataset.other_grids.clear();
   }
   return dataset;
 }
@@ -64,22 +78,27 @@ MeshData view_mesh(const io::SharedMemory& memory, const io::SharedHeader& heade
   mesh.connectivity = view_section<std::uint32_t>(memory, header.connectivity);
   mesh.scalars = view_section<double>(memory, header.scalars);
   mesh.association = description.association;
-  mesh.array_name = std::move(description.array_name);
-  mesh.component = description.component;
+  mesh.array_name = std::move(description.field.array_name);
+  mesh.component = description.field.component;
+  for (std::size_t i = 0; i < description.others.size(); ++i) {
+    io::FieldDescription& other = description.others[i];
+    mesh.others.push_back(
+        {view_section<double>(memory, header.others.at(i)), std::move(other.array_name), other.component});
+  }
   mesh.storage = memory.storage;
   return mesh;
 }
 
-GridData view_grid(const io::SharedMemory& memory, const io::SharedHeader& header, io::Description& description,
-                   const GridShape& shape) {
+GridData view_grid(const io::SharedMemory& memory, const io::Section& values, const io::Description& description,
+                   const io::FieldDescription& field) {
   GridData grid;
-  grid.shape = shape;
+  grid.shape = *description.info.grid;
   grid.association = description.association;
-  grid.type = description.type;
-  grid.components = description.components;
-  grid.component = description.component;
-  grid.values = view_section<std::byte>(memory, header.values);
-  grid.array_name = std::move(description.array_name);
+  grid.type = field.type;
+  grid.components = field.components;
+  grid.component = field.component;
+  grid.values = view_section<std::byte>(memory, values);
+  grid.array_name = field.array_name;
   grid.storage = memory.storage;
   return grid;
 }
@@ -89,12 +108,14 @@ Dataset view_dataset(const io::SharedMemory& memory, bool only_info) {
   std::memcpy(&header, memory.bytes.data(), sizeof header);
   io::Description description = io::decode_description(view_section<std::byte>(memory, header.description));
   Dataset dataset;
-  dataset.info = std::move(description.info);
-  if (only_info) return dataset;
-  if (dataset.is_grid())
-    dataset.grid = view_grid(memory, header, description, *dataset.info.grid);
-  else
+  if (!only_info && description.info.grid) {
+    dataset.grid = view_grid(memory, header.values, description, description.field);
+    for (std::size_t i = 0; i < description.others.size(); ++i)
+      dataset.other_grids.push_back(view_grid(memory, header.others.at(i), description, description.others[i]));
+  } else if (!only_info) {
     dataset.mesh = view_mesh(memory, header, description);
+  }
+  dataset.info = std::move(description.info);
   return dataset;
 }
 
@@ -105,17 +126,19 @@ void validate(const Dataset& dataset, bool only_info, const std::string& path) {
     io::validate_grid(dataset.grid, path);
   else
     io::validate_mesh(dataset.mesh, path);
+  for (const GridData& other : dataset.other_grids) io::validate_grid(other, path);
 }
 
 }  // namespace
 
 Dataset read_dataset(const std::string& path, const ReadOptions& options, const Progress& progress) {
   if (path.empty()) throw Error(ErrorCode::kInvalidArgument, "no file was named");
+  require_others(options.others);
   const bool is_builtin = path.starts_with(kBuiltinPrefix);
   if (!is_builtin && options.grid_file.empty() && io::is_raw_file(path, options.raw))
-    return choose_field(io::read_raw_file(path, options.raw, progress), options, path);
+    return finish(choose_raw_fields(io::read_raw_file(path, options.raw, progress), options), options, path);
   io::require_no_layout(options.raw, path);
-  if (is_builtin) return choose_field(make_builtin(path, options.array), options, path);
+  if (is_builtin) return finish(make_builtin(path, options.array, options.others), options, path);
   // Find out early what needs no reader process: a missing file, a wrong kind of file.
   require_drawable(io::detect_format(path, !options.grid_file.empty()), path);
   io::ReaderRequest request{path, options, getpid()};

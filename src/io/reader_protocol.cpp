@@ -10,7 +10,7 @@ namespace tetravox::io {
 
 namespace {
 
-constexpr const char* kVersionArgument = "protocol=2";
+constexpr const char* kVersionArgument = "protocol=3";
 
 std::string format_double(double value) {
   char buffer[64];
@@ -27,6 +27,16 @@ Number parse_number(std::string_view text) {
   return value;
 }
 
+Association association_from_text(std::string_view text) {
+  return text == "cell" ? Association::kCell : Association::kPoint;
+}
+
+/// The further array that was begun last.
+ArrayRequest& last_other(ReadOptions& options) {
+  if (options.others.empty()) throw Error(ErrorCode::kInternal, "tetravox-reader: an argument is out of order");
+  return options.others.back();
+}
+
 void set_request_value(ReaderRequest& request, std::string_view key, std::string_view value) {
   ReadOptions& options = request.options;
   if (key == "file")
@@ -36,9 +46,15 @@ void set_request_value(ReaderRequest& request, std::string_view key, std::string
   else if (key == "array")
     options.array.name = value;
   else if (key == "association")
-    options.array.association = value == "cell" ? Association::kCell : Association::kPoint;
+    options.array.association = association_from_text(value);
   else if (key == "component")
     options.array.component = parse_number<int>(value);
+  else if (key == "other")
+    options.others.emplace_back().name = value;
+  else if (key == "other_association")
+    last_other(options).association = association_from_text(value);
+  else if (key == "other_component")
+    last_other(options).component = parse_number<int>(value);
   else if (key == "time_index")
     options.time.index = parse_number<std::size_t>(value);
   else if (key == "time_value")
@@ -221,6 +237,33 @@ DatasetInfo take_info(ByteReader& in) {
   return info;
 }
 
+void put_field(ByteWriter& out, const FieldDescription& field) {
+  out.put(field.array_name);
+  out.put(static_cast<std::uint64_t>(field.component + 1));  // kMagnitude is -1
+  out.put(static_cast<std::uint64_t>(field.type));
+  out.put(static_cast<std::uint64_t>(field.components));
+}
+
+FieldDescription take_field(ByteReader& in) {
+  FieldDescription field;
+  field.array_name = in.text();
+  field.component = static_cast<int>(in.number()) - 1;
+  const std::uint64_t type = in.number();
+  if (type > static_cast<std::uint64_t>(ScalarType::kFloat64)) throw std::out_of_range("a number type is unknown");
+  field.type = static_cast<ScalarType>(type);
+  field.components = static_cast<int>(in.number());
+  return field;
+}
+
+/// Appends the arguments for one array; `prefix` begins the keys that belong to its `key`.
+void put_array_request(const std::string& key, const std::string& prefix, const ArrayRequest& array,
+                       std::vector<std::string>& out) {
+  if (!array.name.empty()) out.push_back(key + "=" + array.name);
+  if (array.association)
+    out.push_back(prefix + (*array.association == Association::kCell ? "association=cell" : "association=point"));
+  if (array.component) out.push_back(prefix + "component=" + std::to_string(*array.component));
+}
+
 /// Bytes of the UTF-8 character that starts at `i`; 0 where there is none.
 std::size_t utf8_length(const std::string& text, std::size_t i) {
   const auto first = static_cast<unsigned char>(text[i]);
@@ -240,10 +283,8 @@ std::size_t utf8_length(const std::string& text, std::size_t i) {
 std::vector<std::string> format_request(const ReaderRequest& request) {
   const ReadOptions& options = request.options;
   std::vector<std::string> out{kVersionArgument, "file=" + request.file, "parent=" + std::to_string(request.parent)};
-  if (!options.array.name.empty()) out.push_back("array=" + options.array.name);
-  if (options.array.association)
-    out.push_back(*options.array.association == Association::kCell ? "association=cell" : "association=point");
-  if (options.array.component) out.push_back("component=" + std::to_string(*options.array.component));
+  put_array_request("array", "", options.array, out);
+  for (const ArrayRequest& other : options.others) put_array_request("other", "other_", other, out);
   if (options.time.index) out.push_back("time_index=" + std::to_string(*options.time.index));
   if (options.time.value) out.push_back("time_value=" + format_double(*options.time.value));
   if (!options.grid_file.empty()) out.push_back("grid_file=" + options.grid_file);
@@ -269,11 +310,10 @@ ReaderRequest parse_request(std::span<const char* const> arguments) {
 std::vector<std::byte> encode_description(const Description& description) {
   ByteWriter out;
   put_info(out, description.info);
-  out.put(description.array_name);
   out.put(static_cast<std::uint64_t>(description.association));
-  out.put(static_cast<std::uint64_t>(description.component + 1));  // kMagnitude is -1
-  out.put(static_cast<std::uint64_t>(description.type));
-  out.put(static_cast<std::uint64_t>(description.components));
+  put_field(out, description.field);
+  out.put(std::uint64_t{description.others.size()});
+  for (const FieldDescription& other : description.others) put_field(out, other);
   return out.take();
 }
 
@@ -281,13 +321,10 @@ Description decode_description(std::span<const std::byte> bytes) {
   ByteReader in(bytes);
   Description description;
   description.info = take_info(in);
-  description.array_name = in.text();
   description.association = to_association(in.number());
-  description.component = static_cast<int>(in.number()) - 1;
-  const std::uint64_t type = in.number();
-  if (type > static_cast<std::uint64_t>(ScalarType::kFloat64)) throw std::out_of_range("a number type is unknown");
-  description.type = static_cast<ScalarType>(type);
-  description.components = static_cast<int>(in.number());
+  description.field = take_field(in);
+  for (std::size_t i = 0, n = in.count(32); i < n; ++i) description.others.push_back(take_field(in));
+  if (description.others.size() > kMostOtherArrays) throw std::out_of_range("there are too many fields");
   return description;
 }
 

@@ -10,6 +10,7 @@
 #include "tetravox/error.h"
 #include "tetravox/io.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -50,18 +51,26 @@ struct SharedHeader {
   Section connectivity;  ///< uint32
   Section scalars;       ///< double
   Section values;        ///< of a grid, which has nothing else: see `GridData`
-  Section description;   ///< see `encode_description`
+  /// Of further fields, as `scalars` or `values`; those of one array may be one section.
+  std::array<Section, kMostOtherArrays> others;
+  Section description;  ///< see `encode_description`
 };
 inline constexpr std::uint64_t kSharedMagic = 0x32'58'56'54'52'54'45'54ull;
+
+/// A field that is handed over.
+struct FieldDescription {
+  std::string array_name;
+  int component = 0;
+  ScalarType type = ScalarType::kFloat64;  ///< of a grid's values
+  int components = 1;                      ///< of a grid's values
+};
 
 /// Everything that is not an array.
 struct Description {
   DatasetInfo info;
-  std::string array_name;
-  Association association = Association::kPoint;
-  int component = 0;
-  ScalarType type = ScalarType::kFloat64;  ///< of a grid's values
-  int components = 1;                      ///< of a grid's values
+  Association association = Association::kPoint;  ///< of all fields
+  FieldDescription field;
+  std::vector<FieldDescription> others;
 };
 
 /// The description as bytes, and back.

@@ -57,9 +57,12 @@ void validate_sizes(const MeshData& mesh, const std::string& file) {
   if (mesh.cell_count() >= std::numeric_limits<std::uint32_t>::max()) fail(file, "more than 2^32 - 2 cells");
   if (mesh.cell_offsets.size() != mesh.cell_count() + 1) fail(file, "the cell offsets do not fit the number of cells");
   const std::size_t values = mesh.association == Association::kPoint ? mesh.point_count() : mesh.cell_count();
-  if (mesh.scalars.size() != values)
-    fail(file, "array '" + mesh.array_name + "' has " + std::to_string(mesh.scalars.size()) + " values instead of " +
-                   std::to_string(values));
+  const auto validate_size = [&](const std::string& name, std::size_t size) {
+    if (size != values)
+      fail(file, "array '" + name + "' has " + std::to_string(size) + " values instead of " + std::to_string(values));
+  };
+  validate_size(mesh.array_name, mesh.scalars.size());
+  for (const OtherField& other : mesh.others) validate_size(other.array_name, other.scalars.size());
 }
 
 void validate_offsets(const MeshData& mesh, const std::string& file) {

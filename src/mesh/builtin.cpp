@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <utility>
 
 namespace tetravox::mesh {
 namespace {
@@ -50,9 +51,8 @@ ValueRange range_of(const std::vector<double>& values, std::size_t first, std::s
   return range;
 }
 
-/// Everything known of the mesh; leaves the values of array `chosen` in `storage`.
-DatasetInfo describe_builtin(const std::string& source, const Builtin& builtin, BuiltinStorage& storage,
-                             const ArrayRequest& request, std::size_t& chosen) {
+/// Everything known of the mesh; leaves the values of its last array in `storage`.
+DatasetInfo describe_builtin(const std::string& source, const Builtin& builtin, BuiltinStorage& storage) {
   DatasetInfo info;
   info.source = source;
   info.format = "embedded";
@@ -71,9 +71,25 @@ DatasetInfo describe_builtin(const std::string& source, const Builtin& builtin, 
     array.magnitude_range = range;
     info.arrays.push_back(array);
   }
-  chosen = choose_array(info, request);
-  if (chosen + 1 != builtin.arrays.size()) builtin.fill_scalars(storage, chosen);
   return info;
+}
+
+/// Makes the values of the arrays that are asked for, and views them.
+void add_fields(const DatasetInfo& info, const Builtin& builtin, const BuiltinMeshRequest& request,
+                BuiltinStorage& storage, MeshData& mesh) {
+  const std::size_t chosen = choose_array(info, request.array);
+  mesh.association = info.arrays[chosen].association;
+  mesh.array_name = info.arrays[chosen].name;
+  support::require_memory(request.others.size() * storage.scalars.size() * sizeof(double),
+                          info.source + " with further arrays");
+  for (const ArrayRequest& other : request.others) {
+    const std::size_t index = choose_other_array(info, other, info.arrays[chosen]);
+    builtin.fill_scalars(storage, index);
+    storage.others.push_back(std::move(storage.scalars));
+    mesh.others.push_back({storage.others.back(), info.arrays[index].name, 0});
+  }
+  builtin.fill_scalars(storage, chosen);
+  mesh.scalars = storage.scalars;
 }
 
 }  // namespace
@@ -102,22 +118,18 @@ const std::vector<BuiltinMeshEntry>& builtin_meshes() {
   return entries;
 }
 
-Dataset make_builtin_mesh(const BuiltinMeshEntry& entry, std::uint64_t cells, const ArrayRequest& request,
-                          const std::string& source) {
+Dataset make_builtin_mesh(const BuiltinMeshEntry& entry, const BuiltinMeshRequest& request, const std::string& source) {
   const auto builtin = std::find_if(builtins().begin(), builtins().end(),
                                     [&](const Builtin& one) { return one.entry.name == entry.name; });
   TETRAVOX_CHECK_LT(std::distance(builtins().begin(), builtin), std::ssize(builtins()));
-  const auto storage = std::make_shared<BuiltinStorage>(builtin->make_mesh(cells));
+  const auto storage = std::make_shared<BuiltinStorage>(builtin->make_mesh(request.cells));
   Dataset dataset;
-  std::size_t chosen = 0;
-  dataset.info = describe_builtin(source, *builtin, *storage, request, chosen);
+  dataset.info = describe_builtin(source, *builtin, *storage);
+  add_fields(dataset.info, *builtin, request, *storage, dataset.mesh);
   dataset.mesh.points = storage->points;
   dataset.mesh.cell_types = storage->cell_types;
   dataset.mesh.cell_offsets = storage->cell_offsets;
   dataset.mesh.connectivity = storage->connectivity;
-  dataset.mesh.scalars = storage->scalars;
-  dataset.mesh.association = dataset.info.arrays[chosen].association;
-  dataset.mesh.array_name = dataset.info.arrays[chosen].name;
   dataset.mesh.storage = storage;
   return dataset;
 }

@@ -23,11 +23,16 @@ struct BuiltinMeshEntry {
 };
 const std::vector<BuiltinMeshEntry>& builtin_meshes();
 
-/// Makes the mesh with this entry's name and about `cells` cells, in [kFewestCells, kMostCells], with the array that
-/// `request` asks for. Messages and the summary call it `source`.
+/// Which embedded mesh is wanted.
+struct BuiltinMeshRequest {
+  std::uint64_t cells = 0;  ///< about so many, in [kFewestCells, kMostCells]
+  ArrayRequest array;
+  std::vector<ArrayRequest> others;
+};
+
+/// Makes the mesh with this entry's name. Messages and the summary call it `source`.
 /// @throws Error: kInvalidArgument for an array that it has not, kOutOfMemory.
-Dataset make_builtin_mesh(const BuiltinMeshEntry& entry, std::uint64_t cells, const ArrayRequest& request,
-                          const std::string& source);
+Dataset make_builtin_mesh(const BuiltinMeshEntry& entry, const BuiltinMeshRequest& request, const std::string& source);
 
 /// Memory of an embedded mesh; `MeshData` views it.
 struct BuiltinStorage {
@@ -36,6 +41,7 @@ struct BuiltinStorage {
   std::vector<std::uint64_t> cell_offsets;
   std::vector<std::uint32_t> connectivity;
   std::vector<double> scalars;
+  std::vector<std::vector<double>> others;
 };
 
 /// An array that an embedded mesh can be asked for.

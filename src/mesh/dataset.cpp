@@ -133,4 +133,26 @@ std::size_t choose_array(const DatasetInfo& info, const ArrayRequest& request) {
   throw Error(ErrorCode::kInvalidArgument, source + " has no " + wish + "; there are: " + describe_arrays(info));
 }
 
+std::size_t choose_other_array(const DatasetInfo& info, const ArrayRequest& request, const ArrayInfo& first) {
+  if (request.name.empty())
+    throw Error(ErrorCode::kInvalidArgument,
+                "name the array that is wanted beside '" + first.name + "'; there are: " + describe_arrays(info));
+  ArrayRequest wanted = request;
+  if (!wanted.association) {
+    const bool has_twin = std::any_of(info.arrays.begin(), info.arrays.end(), [&](const ArrayInfo& array) {
+      return array.name == request.name && array.association == first.association;
+    });
+    if (has_twin) wanted.association = first.association;
+  }
+  const std::size_t chosen = choose_array(info, wanted);
+  if (info.arrays[chosen].association != first.association)
+    throw Error(ErrorCode::kInvalidArgument, describe(first) + " and " + describe(info.arrays[chosen]) +
+                                                 " do not go together: give two point arrays or two cell arrays");
+  return chosen;
+}
+
+int choose_component(const ArrayInfo& array, const ArrayRequest& request) {
+  return array.components == 1 ? 0 : request.component.value_or(kMagnitude);
+}
+
 }  // namespace tetravox

@@ -28,26 +28,17 @@ ValueRange joined(ValueRange a, const ValueRange& b) {
   return a;
 }
 
-std::size_t value_count(const MeshData& mesh, const TetrahedronList& list) {
-  return mesh.association == Association::kPoint ? list.point_of_vertex.size() : list.count;
-}
-
-/// Value of vertex i, or of tetrahedron i with cell data.
-double value_of(const MeshData& mesh, const TetrahedronList& list, std::size_t i) {
-  return mesh.scalars[mesh.association == Association::kPoint ? list.point_of_vertex[i] : list.tetrahedra[i].source];
-}
-
 /// Exponents of the values' distances from `offset`, summed: integers add up to the same in any order.
 struct ExponentSum {
   std::int64_t sum = 0, count = 0;
 };
 
-ExponentSum sum_exponents(const MeshData& mesh, const TetrahedronList& list, double offset) {
+ExponentSum sum_exponents(const ListedField& field, double offset) {
   return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, value_count(mesh, list), kGrain), ExponentSum{},
+      tbb::blocked_range<std::size_t>(0, field.size(), kGrain), ExponentSum{},
       [&](const tbb::blocked_range<std::size_t>& range, ExponentSum part) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          const double distance = value_of(mesh, list, i) - offset;
+          const double distance = field.value(i) - offset;
           if (distance == 0.0) continue;
           part.sum += std::ilogb(distance);
           ++part.count;
@@ -83,17 +74,17 @@ double half_extent(const std::array<ValueRange, 3>& bounds) {
   return extent;
 }
 
-ValueRange scalar_range(const MeshData& mesh, const TetrahedronList& list) {
+ValueRange scalar_range(const ListedField& field) {
   return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, value_count(mesh, list), kGrain), kEmptyRange,
+      tbb::blocked_range<std::size_t>(0, field.size(), kGrain), kEmptyRange,
       [&](const tbb::blocked_range<std::size_t>& part, ValueRange range) {
-        for (std::size_t i = part.begin(); i < part.end(); ++i) include(range, value_of(mesh, list, i));
+        for (std::size_t i = part.begin(); i < part.end(); ++i) include(range, field.value(i));
         return range;
       },
       joined);
 }
 
-ScalarFrame choose_scalar_frame(const MeshData& mesh, const TetrahedronList& list, const ValueRange& range) {
+ScalarFrame choose_scalar_frame(const ListedField& field, const ValueRange& range) {
   ScalarFrame frame;
   const double largest_value = std::max(std::abs(range.min), std::abs(range.max));
   if (range.max * 0.5 - range.min * 0.5 < 0.25 * largest_value) frame.offset = range.min * 0.5 + range.max * 0.5;
@@ -102,7 +93,7 @@ ScalarFrame choose_scalar_frame(const MeshData& mesh, const TetrahedronList& lis
   // Find how far below the largest magnitude the values typically lie.
   constexpr int kFar = 40, kMostAboveOne = 60;
   int exponent = std::ilogb(largest);
-  const ExponentSum exponents = sum_exponents(mesh, list, frame.offset);
+  const ExponentSum exponents = sum_exponents(field, frame.offset);
   if (exponents.count > 0) {
     const int below = exponent - static_cast<int>(exponents.sum / exponents.count);
     if (below > kFar) exponent -= std::min(kMostAboveOne, below / 2);
@@ -111,13 +102,32 @@ ScalarFrame choose_scalar_frame(const MeshData& mesh, const TetrahedronList& lis
   return frame;
 }
 
+namespace {
+
+/// Range, frame and stored scalars of one field.
+OtherScalars store_field(const ListedField& field) {
+  OtherScalars stored;
+  stored.range = scalar_range(field);
+  const ScalarFrame frame = choose_scalar_frame(field, stored.range);
+  stored.offset = frame.offset;
+  stored.scale = frame.scale;
+  stored.scalars.resize(field.size());
+  support::parallel_chunks(field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) stored.scalars[i] = frame.stored(field.value(i));
+  });
+  return stored;
+}
+
+}  // namespace
+
 void write_vertices(const MeshData& mesh, const TetrahedronList& list, PreparedMesh& prepared) {
   prepared.bounds = bounds_of_vertices(mesh, list);
   for (int axis = 0; axis < 3; ++axis)
     prepared.origin[axis] = prepared.bounds[axis].min * 0.5 + prepared.bounds[axis].max * 0.5;
   prepared.world_per_local = half_extent(prepared.bounds);
-  prepared.scalar_range = scalar_range(mesh, list);
-  const ScalarFrame frame = choose_scalar_frame(mesh, list, prepared.scalar_range);
+  const ListedField field{list, mesh.association, mesh.scalars};
+  prepared.scalar_range = scalar_range(field);
+  const ScalarFrame frame = choose_scalar_frame(field, prepared.scalar_range);
   prepared.scalar_offset = frame.offset;
   prepared.scalar_scale = frame.scale;
   prepared.association = mesh.association;
@@ -133,11 +143,12 @@ void write_vertices(const MeshData& mesh, const TetrahedronList& list, PreparedM
       prepared.vertices[i] = {local(0), local(1), local(2), with_point_data ? frame.stored(mesh.scalars[point]) : 0.0f};
     }
   });
+  for (const OtherField& other : mesh.others)
+    prepared.others.push_back(store_field({list, mesh.association, other.scalars}));
   if (with_point_data) return;
   prepared.cell_scalars.resize(list.count);
   support::parallel_chunks(list.count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      prepared.cell_scalars[i] = frame.stored(mesh.scalars[list.tetrahedra[i].source]);
+    for (std::size_t i = begin; i < end; ++i) prepared.cell_scalars[i] = frame.stored(field.value(i));
   });
 }
 

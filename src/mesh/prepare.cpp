@@ -54,7 +54,10 @@ MemoryEstimate estimate_prepare_memory(const MeshData& mesh) {
   const std::uint64_t weld = (1 + sizeof(mesh::PointTarget)) * points + (16 + 4) * vertices;
   const std::uint64_t sort = (1 + sizeof(mesh::PointTarget)) * points + 8 * vertices + 2 * list;
   const std::uint64_t match = 12 * vertices + list + links + 4 * tetrahedra;
-  const std::uint64_t result = links + cell_scalars + sizeof(Vertex) * vertices + sizeof(BoundaryFace) * boundary;
+  const std::uint64_t others =
+      sizeof(float) * mesh.others.size() * (mesh.association == Association::kCell ? tetrahedra : vertices);
+  const std::uint64_t result =
+      links + cell_scalars + others + sizeof(Vertex) * vertices + sizeof(BoundaryFace) * boundary;
   MemoryEstimate estimate;
   estimate.resident = result;
   estimate.peak = std::max({weld, sort, match, result + list + 8 * vertices}) + kFixed;

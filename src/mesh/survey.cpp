@@ -60,16 +60,23 @@ CellProblem problem_of(const MeshData& mesh, std::size_t cell) {
   fail(where + " uses point " + id + " of " + std::to_string(mesh.point_count()) + " points");
 }
 
+/// Whether all fields have a value at this point, or in this cell.
+bool has_values(const MeshData& mesh, std::size_t i) {
+  bool are_finite = std::isfinite(mesh.scalars[i]);
+  for (const OtherField& other : mesh.others) are_finite &= std::isfinite(other.scalars[i]);
+  return are_finite;
+}
+
 /// Marks the points of a valid cell unless a value is missing; returns whether the cell is kept.
 bool mark_points(const MeshData& mesh, std::size_t cell, Buffer<std::uint8_t>& is_used) {
   const CellType type = mesh.cell_types[cell];
   const std::span<const std::uint32_t> entry = cell_entry(mesh, cell);
-  bool has_values = true;
+  bool is_kept = true;
   if (mesh.association == Association::kCell)
-    has_values = std::isfinite(mesh.scalars[cell]);
+    is_kept = has_values(mesh, cell);
   else
-    for_each_point(type, entry, [&](std::uint32_t point) { has_values &= std::isfinite(mesh.scalars[point]); });
-  if (!has_values) return false;
+    for_each_point(type, entry, [&](std::uint32_t point) { is_kept &= has_values(mesh, point); });
+  if (!is_kept) return false;
   for_each_point(type, entry, [&](std::uint32_t point) {
     std::atomic_ref<std::uint8_t> flag(is_used[point]);
     if (flag.load(std::memory_order_relaxed) == 0) flag.store(1, std::memory_order_relaxed);
@@ -91,9 +98,13 @@ void validate_sizes(const MeshData& mesh) {
     fail("there are " + std::to_string(mesh.cell_offsets.size()) + " cell offsets for " + std::to_string(cells) +
          " cells, not one more");
   const std::size_t values = mesh.association == Association::kPoint ? mesh.point_count() : cells;
-  if (mesh.scalars.size() != values)
-    fail("array '" + mesh.array_name + "' has " + std::to_string(mesh.scalars.size()) + " values for " +
-         std::to_string(values) + (mesh.association == Association::kPoint ? " points" : " cells"));
+  const auto validate_size = [&](const std::string& name, std::size_t size) {
+    if (size != values)
+      fail("array '" + name + "' has " + std::to_string(size) + " values for " + std::to_string(values) +
+           (mesh.association == Association::kPoint ? " points" : " cells"));
+  };
+  validate_size(mesh.array_name, mesh.scalars.size());
+  for (const OtherField& other : mesh.others) validate_size(other.array_name, other.scalars.size());
 }
 
 Survey survey_cells(const MeshData& mesh, ProgressMeter& meter) {

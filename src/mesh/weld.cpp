@@ -30,7 +30,7 @@ struct BoundsResult {
   std::size_t first_bad = std::numeric_limits<std::size_t>::max();
 };
 
-/// Order of points at one place of the curve: by position, then value, then id.
+/// Order of points at one place of the curve: by position, then the values of all fields, then id.
 class PointOrder {
  public:
   explicit PointOrder(const MeshData& mesh) : mesh_(mesh), with_values_(mesh.association == Association::kPoint) {}
@@ -40,7 +40,11 @@ class PointOrder {
     const double* q = position(b);
     for (int axis = 0; axis < 3; ++axis)
       if (p[axis] != q[axis]) return p[axis] < q[axis];
-    if (!is_same_value(a, b)) return mesh_.scalars[a.point] < mesh_.scalars[b.point];
+    if (with_values_) {
+      if (mesh_.scalars[a.point] != mesh_.scalars[b.point]) return mesh_.scalars[a.point] < mesh_.scalars[b.point];
+      for (const OtherField& other : mesh_.others)
+        if (other.scalars[a.point] != other.scalars[b.point]) return other.scalars[a.point] < other.scalars[b.point];
+    }
     return a.point < b.point;
   }
   bool is_same_position(const CurvePoint& a, const CurvePoint& b) const {
@@ -49,8 +53,11 @@ class PointOrder {
     return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
   }
   /// Values of used points are finite, so that == is an equivalence.
-  bool is_same_value(const CurvePoint& a, const CurvePoint& b) const {
-    return !with_values_ || mesh_.scalars[a.point] == mesh_.scalars[b.point];
+  bool are_values_same(const CurvePoint& a, const CurvePoint& b) const {
+    if (!with_values_) return true;
+    bool are_same = mesh_.scalars[a.point] == mesh_.scalars[b.point];
+    for (const OtherField& other : mesh_.others) are_same &= other.scalars[a.point] == other.scalars[b.point];
+    return are_same;
   }
 
  private:
@@ -100,7 +107,7 @@ std::vector<std::size_t> chunk_borders(const Buffer<CurvePoint>& order) {
   return borders;
 }
 
-/// Sorts points with one key by position and value, writes their canonical ids, and leaves in `key` whether a point
+/// Sorts points with one key by position and values, writes their canonical ids, and leaves in `key` whether a point
 /// begins a new vertex. Returns how many do.
 std::size_t group_run(CurvePoint* first, CurvePoint* last, const PointOrder& is_before, Buffer<PointTarget>& targets) {
   constexpr std::ptrdiff_t kLongRun = 1 << 16;
@@ -115,7 +122,7 @@ std::size_t group_run(CurvePoint* first, CurvePoint* last, const PointOrder& is_
     for (; place_end != last && is_before.is_same_position(*place, *place_end); ++place_end)
       canonical = std::min(canonical, place_end->point);
     for (CurvePoint* p = place; p != place_end; ++p) {
-      const bool begins_vertex = p == place || !is_before.is_same_value(p[-1], *p);
+      const bool begins_vertex = p == place || !is_before.are_values_same(p[-1], *p);
       targets[p->point].canonical = canonical;
       p->key = begins_vertex;
       vertices += begins_vertex;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Points of a file -> vertices: points that coincide and carry the same value become one, in space-filling order.
+/// Points of a file -> vertices: points that coincide and carry the same values become one, in space-filling order.
 
 #include "src/mesh/buffer.h"
 #include "src/mesh/progress_meter.h"
@@ -29,8 +29,8 @@ struct Weld {
 /// @throws Error (kBadFile) with the lowest used point that has a coordinate which is not finite.
 std::array<ValueRange, 3> bounds_of_used_points(const MeshData& mesh, const Buffer<std::uint8_t>& is_used);
 
-/// Welds the used points exactly: coordinates equal (-0 is 0), and values too with point data. Vertices are numbered
-/// along a Hilbert curve. Deterministic.
+/// Welds the used points exactly: coordinates equal (-0 is 0), and the values of all fields too with point data.
+/// Vertices are numbered along a Hilbert curve. Deterministic.
 Weld weld_points(const MeshData& mesh, const Buffer<std::uint8_t>& is_used, const std::array<ValueRange, 3>& bounds,
                  ProgressMeter& meter);
 

@@ -6,9 +6,11 @@
 #include "tetravox/error.h"
 
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string_view>
+#include <vector>
 
 namespace tetravox {
 namespace {
@@ -70,16 +72,34 @@ ScalarType parse_type(const BuiltinName& wanted, const BuiltinName::Option& opti
   }
 }
 
-Dataset make_mesh(const BuiltinName& wanted, const mesh::BuiltinMeshEntry& entry, const ArrayRequest& request) {
-  std::uint64_t cells = entry.default_cells;
+/// The arrays that are asked for.
+struct WantedArrays {
+  const ArrayRequest& array;
+  const std::vector<ArrayRequest>& others;
+};
+
+Dataset make_mesh(const BuiltinName& wanted, const mesh::BuiltinMeshEntry& entry, const WantedArrays& arrays) {
+  mesh::BuiltinMeshRequest request{entry.default_cells, arrays.array, arrays.others};
   for (const BuiltinName::Option& option : wanted.options) {
     if (option.key != "cells") fail_option(wanted, option, "cells=N");
-    cells = parse_number(wanted, option, mesh::kFewestCells, mesh::kMostCells);
+    request.cells = parse_number(wanted, option, mesh::kFewestCells, mesh::kMostCells);
   }
-  return mesh::make_builtin_mesh(entry, cells, request, wanted.source);
+  return mesh::make_builtin_mesh(entry, request, wanted.source);
 }
 
-Dataset make_grid(const BuiltinName& wanted, const grid::BuiltinGridEntry& entry, const ArrayRequest& request) {
+/// Of all fields of a grid, those that are asked for.
+Dataset pick_fields(Dataset dataset, const WantedArrays& arrays) {
+  std::vector<GridData> fields{dataset.grid};
+  fields.insert(fields.end(), dataset.other_grids.begin(), dataset.other_grids.end());
+  const std::size_t chosen = choose_array(dataset.info, arrays.array);
+  dataset.grid = fields[chosen];
+  dataset.other_grids.clear();
+  for (const ArrayRequest& other : arrays.others)
+    dataset.other_grids.push_back(fields[choose_other_array(dataset.info, other, dataset.info.arrays[chosen])]);
+  return dataset;
+}
+
+Dataset make_grid(const BuiltinName& wanted, const grid::BuiltinGridEntry& entry, const WantedArrays& arrays) {
   grid::BuiltinGridRequest grid{entry.default_size, entry.default_type, 0};
   for (const BuiltinName::Option& option : wanted.options) {
     if (option.key == "size")
@@ -91,22 +111,20 @@ Dataset make_grid(const BuiltinName& wanted, const grid::BuiltinGridEntry& entry
     else
       fail_option(wanted, option, entry.has_seed ? "size=N, type=T, seed=N" : "size=N, type=T");
   }
-  Dataset dataset = grid::make_builtin_grid(entry, grid, wanted.source);
-  choose_array(dataset.info, request);  // There is one array, and this says so.
-  return dataset;
+  return pick_fields(grid::make_builtin_grid(entry, grid, wanted.source), arrays);
 }
 
 }  // namespace
 
-Dataset make_builtin(const std::string& name, const ArrayRequest& request) {
+Dataset make_builtin(const std::string& name, const ArrayRequest& request, const std::vector<ArrayRequest>& others) {
   const BuiltinName wanted = parse_name(name);
   std::string names;
   for (const mesh::BuiltinMeshEntry& entry : mesh::builtin_meshes()) {
-    if (wanted.name == entry.name) return make_mesh(wanted, entry, request);
+    if (wanted.name == entry.name) return make_mesh(wanted, entry, {request, others});
     names += (names.empty() ? "" : ", ") + entry.name;
   }
   for (const grid::BuiltinGridEntry& entry : grid::builtin_grids()) {
-    if (wanted.name == entry.name) return make_grid(wanted, entry, request);
+    if (wanted.name == entry.name) return make_grid(wanted, entry, {request, others});
     names += ", " + entry.name;
   }
   throw Error(ErrorCode::kInvalidArgument,

@@ -20,7 +20,8 @@ struct DifferentialSample {
 
 struct DifferentialSamples {
   std::vector<DifferentialSample> samples;
-  double unit_length = 1.0;  ///< world length
+  std::vector<std::vector<float>> others;  ///< [others][samples]: stored scalars of further fields at the same places
+  double unit_length = 1.0;                ///< world length
 };
 
 /// More places than this are not looked at.
@@ -34,7 +35,11 @@ DifferentialSamples sample_differentials(const PreparedMesh& mesh, std::size_t l
 
 /// At the values, all of them or of rows evenly spread: central differences (one-sided at the border), and the second
 /// derivative from the Hessian of second differences (Kindlmann and Durkin 1998, their measure by the Hessian), in
-/// world directions, of even and uneven axes. Places next to a missing value are left out.
+/// world directions, of even and uneven axes. Places next to a missing value, and those without a value of
+/// another field, are left out.
 DifferentialSamples sample_differentials(const PreparedGrid& grid, std::size_t largest_count);
+
+/// From 0 to the largest gradient, without a few outliers; stored scalar per unit length.
+ValueRange range_of_gradients(const std::vector<DifferentialSample>& samples);
 
 }  // namespace tetravox::scene

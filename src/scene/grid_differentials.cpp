@@ -161,6 +161,16 @@ class RowSampler {
   std::array<std::vector<double>, 3> widths_;
 };
 
+/// Stored scalars of row `index` of a further field; a sample without a value is no place.
+void sample_other(const grid::BlockReader& reader, const std::array<std::size_t, 3>& counts, std::size_t index,
+                  float* values, DifferentialSample* samples) {
+  reader.read({{0, static_cast<std::int64_t>(index % counts[1]), static_cast<std::int64_t>(index / counts[1])},
+               {static_cast<std::int64_t>(counts[0]), 1, 1}},
+              values);
+  for (std::size_t i = 0; i < counts[0]; ++i)
+    if (std::isnan(values[i])) samples[i] = {};
+}
+
 }  // namespace
 
 DifferentialSamples sample_differentials(const PreparedGrid& grid, std::size_t largest_count) {
@@ -172,9 +182,18 @@ DifferentialSamples sample_differentials(const PreparedGrid& grid, std::size_t l
   DifferentialSamples result;
   result.unit_length = sampler.unit_length;
   result.samples.resize(chosen.size() * counts[0]);
+  result.others.assign(grid.others.size(), std::vector<float>(result.samples.size()));
+  std::vector<grid::BlockReader> readers;
+  for (const PreparedGrid& other : grid.others)
+    readers.emplace_back(other.data, grid::ScalarFrame{other.scalar_offset, other.scalar_scale});
   support::parallel_chunks(chosen.size(), kRowGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<float> working;
-    for (std::size_t n = begin; n < end; ++n) sampler.sample(chosen[n], working, result.samples.data() + n * counts[0]);
+    for (std::size_t n = begin; n < end; ++n) {
+      DifferentialSample* samples = result.samples.data() + n * counts[0];
+      sampler.sample(chosen[n], working, samples);
+      for (std::size_t other = 0; other < readers.size(); ++other)
+        sample_other(readers[other], counts, chosen[n], result.others[other].data() + n * counts[0], samples);
+    }
   });
   return result;
 }

@@ -51,6 +51,15 @@ float finite(double value) {
   return static_cast<float>(std::clamp(value, -kLargest, kLargest));
 }
 
+/// A further field at a place of a cell: linear (point data) or constant (cell data).
+float sample_other(const PreparedMesh& mesh, const OtherScalars& other, std::size_t cell, const mesh::CellVertices& ids,
+                   const Weights& weights) {
+  if (mesh.association == Association::kCell) return other.scalars[cell];
+  double value = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) value += weights[i] * other.scalars[ids[i]];
+  return static_cast<float>(value);
+}
+
 /// A cell with gradients at its vertices, linear in between.
 class CellField {
  public:
@@ -117,6 +126,7 @@ DifferentialSamples sample_differentials(const PreparedMesh& mesh, std::size_t l
   DifferentialSamples result;
   result.unit_length = mesh.world_per_local;
   result.samples.resize(count * places);
+  result.others.assign(mesh.others.size(), std::vector<float>(count * places));
   support::parallel_chunks(count, kCellGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t cell = n * stride;
@@ -125,7 +135,10 @@ DifferentialSamples sample_differentials(const PreparedMesh& mesh, std::size_t l
       if (!(field.volume() > 0.0)) continue;
       for (std::size_t i = 0; i < places; ++i) {
         DifferentialSample& sample = result.samples[n * places + i];
-        sample = field.sample(place_in_cell(n * places + i));
+        const Weights weights = place_in_cell(n * places + i);
+        sample = field.sample(weights);
+        for (std::size_t other = 0; other < mesh.others.size(); ++other)
+          result.others[other][n * places + i] = sample_other(mesh, mesh.others[other], cell, cells[cell], weights);
         if (with_cell_data) sample.value = mesh.cell_scalars[cell];
         sample.volume = static_cast<float>(field.volume());
       }

@@ -1,5 +1,7 @@
 #include "src/scene/scene_effects.h"
 
+#include "src/scene/scene_multidimensional.h"
+
 #include "tetravox/error.h"
 
 #include <cstddef>
@@ -105,9 +107,7 @@ ClipShape read_clip_shape(const JsonPlace& place) {
   if (const auto volume = place.find("volume")) {
     volume->require_keys({"file", "array", "value"});
     ClipVolume made;
-    const JsonPlace file = volume->at("file");
-    made.file = file.string();
-    if (made.file.empty() || made.file.find('\0') != std::string::npos) file.fail("not a file name");
+    made.file = read_file_name(volume->at("file"));
     if (const auto array = volume->find("array")) made.array = array->string();
     read_number(*volume, "value", made.value);
     shape.shape = made;

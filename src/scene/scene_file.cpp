@@ -1,5 +1,6 @@
 #include "src/optics/transfer_function_json.h"
 #include "src/scene/scene_effects.h"
+#include "src/scene/scene_multidimensional.h"
 #include "tetravox/error.h"
 #include "tetravox/scene.h"
 
@@ -16,7 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kSceneVersion = 1;
 constexpr int kLargestSampleCount = 4096;
-constexpr int kLargestComponent = 1'000'000;
 constexpr int kLargestComponentCount = 4;
 constexpr long long kLargestDimension = 0xFFFFFFFE;
 constexpr long long kLargestHeader = 1LL << 53;
@@ -28,12 +28,6 @@ void read_time(const JsonPlace& place, TimeRequest& time) {
     time.index = static_cast<std::size_t>(index->integer(0, 1'000'000'000'000));
   if (const auto value = place.find("value")) time.value = value->number();
   if (time.index.has_value() == time.value.has_value()) place.fail("give either 'index' or 'value'");
-}
-
-std::string read_file_name(const JsonPlace& place) {
-  const std::string& name = place.string();
-  if (name.empty() || name.find('\0') != std::string::npos) place.fail("not a file name");
-  return name;
 }
 
 /// The keys of `place` that say how the bytes of a RAW file are to be understood.
@@ -63,22 +57,9 @@ SceneData read_data(const JsonPlace& place) {
   place.require_keys({"file", "solution_file", "array", "association", "component", "time", "dimensions", "scalar_type",
                       "components", "spacing", "big_endian", "header_bytes"});
   SceneData data;
-  data.file = read_file_name(place.at("file"));
-  if (const auto solution = place.find("solution_file")) data.solution_file = read_file_name(*solution);
-  if (const auto array = place.find("array")) data.array.name = array->string();
-  if (const auto association = place.find("association")) {
-    if (association->string() != "point" && association->string() != "cell")
-      association->fail("expected \"point\" or \"cell\"");
-    data.array.association = association->string() == "point" ? Association::kPoint : Association::kCell;
-  }
-  if (const auto component = place.find("component")) {
-    if (component->value().is_string() && component->string() == "magnitude")
-      data.array.component = kMagnitude;
-    else if (component->value().is_number())
-      data.array.component = static_cast<int>(component->integer(0, kLargestComponent));
-    else
-      component->fail("expected 0, 1, 2, ... or \"magnitude\"");
-  }
+  data.file = scene::read_file_name(place.at("file"));
+  if (const auto solution = place.find("solution_file")) data.solution_file = scene::read_file_name(*solution);
+  data.array = scene::read_array_request(place);
   if (const auto time = place.find("time")) read_time(*time, data.time);
   read_raw_layout(place, data.raw);
   return data;
@@ -174,10 +155,7 @@ Json write_data(const SceneData& data) {
   Json json;
   json["file"] = data.file;
   if (!data.solution_file.empty()) json["solution_file"] = data.solution_file;
-  if (!data.array.name.empty()) json["array"] = data.array.name;
-  if (data.array.association) json["association"] = *data.array.association == Association::kPoint ? "point" : "cell";
-  if (data.array.component && *data.array.component == kMagnitude) json["component"] = "magnitude";
-  if (data.array.component && *data.array.component != kMagnitude) json["component"] = *data.array.component;
+  scene::write_array_request(data.array, json);
   if (data.time.index) json["time"]["index"] = *data.time.index;
   if (data.time.value) json["time"]["value"] = *data.time.value;
   const RawLayout& raw = data.raw;
@@ -224,12 +202,17 @@ Scene parse_scene(const std::string& text, const std::string& source_name) {
   const nlohmann::json json = optics::parse_json(text, source_name);
   const JsonPlace root(json, source_name);
   require_version(root);
-  root.require_keys(
-      {"tetravox", "data", "transfer_function", "surfaces", "clipping", "lighting", "camera", "image", "render"});
+  root.require_keys({"tetravox", "data", "transfer_function", "multidimensional", "color_by", "surfaces", "clipping",
+                     "lighting", "camera", "image", "render"});
   Scene scene;
   scene.data = read_data(root.at("data"));
   if (const auto function = root.find("transfer_function"))
     scene.transfer_function = optics::read_scene_function(*function);
+  if (const auto function = root.find("multidimensional"))
+    scene.multidimensional = scene::read_multidimensional(*function);
+  if (const auto color_by = root.find("color_by")) scene.color_by = scene::read_color_by(*color_by);
+  if (scene.multidimensional && (scene.transfer_function || scene.color_by))
+    root.fail("'multidimensional' has colours and opacities of its own: leave out 'transfer_function' and 'color_by'");
   if (const auto surfaces = root.find("surfaces")) scene.settings.surfaces = scene::read_surfaces(*surfaces);
   if (const auto clipping = root.find("clipping")) scene.settings.clipping = scene::read_clipping(*clipping);
   if (const auto lighting = root.find("lighting")) scene.settings.lighting = scene::read_lighting(*lighting);
@@ -244,6 +227,8 @@ std::string format_scene(const Scene& scene) {
   json["tetravox"] = kSceneVersion;
   json["data"] = write_data(scene.data);
   if (scene.transfer_function) json["transfer_function"] = optics::write_scene_function(*scene.transfer_function);
+  if (scene.multidimensional) json["multidimensional"] = scene::write_multidimensional(*scene.multidimensional);
+  if (scene.color_by) json["color_by"] = scene::write_color_by(*scene.color_by);
   const RenderSettings& settings = scene.settings;
   if (!settings.surfaces.empty()) json["surfaces"] = scene::write_surfaces(settings.surfaces);
   if (!settings.clipping.shapes.empty()) json["clipping"] = scene::write_clipping(settings.clipping);

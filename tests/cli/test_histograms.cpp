@@ -83,9 +83,9 @@ TEST_F(Histograms, TwoDimensionsAsAPictureAndATable) {
 TEST_F(Histograms, WrongOptions) {
   expect_error(run({"histogram"}), 2, {"name what to read"});
   expect_error(run({"histogram", "builtin:sphere", "--bins", "0"}), 2, {"--bins"});
-  expect_error(run({"histogram", "builtin:sphere", "--kind", "both"}), 2, {"--kind", "value, gradient"});
+  expect_error(run({"histogram", "builtin:sphere", "--kind", "both"}), 2, {"--kind", "value, gradient, joint"});
   expect_error(run({"histogram", "builtin:sphere", "-o", "a.exr"}), 2, {"a.exr", ".csv"});
-  expect_error(run({"histogram", "builtin:sphere", "--gradient-bins", "4"}), 2, {"--kind gradient"});
+  expect_error(run({"histogram", "builtin:sphere", "--gradient-bins", "4"}), 2, {"--kind gradient or joint"});
   expect_error(run({"histogram", "builtin:sphere", "-o", "a.csv", "--counts", "log"}), 2, {"--counts"});
   expect_error(run({"histogram", "builtin:sphere", "-o", "no/a.csv"}), 1, {"no/a.csv"});
   expect_error(run({"histogram", "absent.vtu"}), 1, {"absent.vtu"});

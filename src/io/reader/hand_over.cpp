@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <span>
+#include <utility>
 
 namespace tetravox::io {
 
@@ -67,54 +69,96 @@ std::pair<std::byte*, SharedHeader> begin_memory(const Description& description,
   return {memory, header};
 }
 
+/// A field of a grid on its way into the memory file.
+struct GridField {
+  vtkDataArray* values = nullptr;  ///< null: the stand-in
+  GridValues plan;
+  int component = 0;                ///< of the array in the file
+  std::optional<std::size_t> twin;  ///< an earlier field whose values are the same
+  Section section;
+};
+
+/// Plans the values of a field, and says in its description what they are.
+GridField plan_field(const Block& block, const ArrayInfo& array, FieldDescription& description) {
+  GridField field;
+  field.values = find_array(block, array);
+  field.component = description.component;
+  if (field.values) {
+    field.plan = plan_grid_values(*field.values, description.component);
+  } else {  // The stand-in.
+    field.plan.type = ScalarType::kUint8;
+    field.plan.bytes = block.cell_count;
+  }
+  description.type = field.plan.type;
+  description.components = field.plan.components;
+  description.component = field.plan.component;
+  return field;
+}
+
+/// The first field before the one at `index` that has the same array handed over as it stands.
+std::optional<std::size_t> find_twin(const std::vector<GridField>& fields, std::size_t index) {
+  for (std::size_t i = 0; i < index && fields[index].plan.is_raw; ++i)
+    if (fields[i].values == fields[index].values) return i;
+  return std::nullopt;
+}
+
 }  // namespace
 
-void hand_over_mesh(const std::vector<Block>& blocks, const Description& description, const ArrayInfo& array,
+void hand_over_mesh(const std::vector<Block>& blocks, const Description& description, const FieldArrays& arrays,
                     const ReaderRequest& request) {
   const DatasetInfo& info = description.info;
   const bool is_point = description.association == Association::kPoint;
   std::uint64_t connectivity = 0;
   for (const Block& block : blocks) connectivity += block.connectivity_count;
+  const std::uint64_t scalar_bytes = (is_point ? info.point_count : info.cell_count) * sizeof(double);
   const auto [memory, header] = begin_memory(description, 0, request, [&](Layout& layout, SharedHeader& h) {
     h.points = layout.place(info.point_count * 3 * sizeof(double));
     h.cell_types = layout.place(info.cell_count * sizeof(CellType));
     h.cell_offsets = layout.place((info.cell_count + 1) * sizeof(std::uint64_t));
     h.connectivity = layout.place(connectivity * sizeof(std::uint32_t));
-    h.scalars = layout.place((is_point ? info.point_count : info.cell_count) * sizeof(double));
+    h.scalars = layout.place(scalar_bytes);
+    for (std::size_t i = 0; i < description.others.size(); ++i) h.others.at(i) = layout.place(scalar_bytes);
   });
   const MeshArrays mesh{reinterpret_cast<double*>(memory + header.points.offset),
                         reinterpret_cast<CellType*>(memory + header.cell_types.offset),
                         reinterpret_cast<std::uint64_t*>(memory + header.cell_offsets.offset),
                         reinterpret_cast<std::uint32_t*>(memory + header.connectivity.offset)};
   for (const Block& block : blocks) write_block(block, mesh);
-  double* scalars = reinterpret_cast<double*>(memory + header.scalars.offset);
-  if (array.name == kUniformArray)
-    std::fill_n(scalars, info.cell_count, 1.0);
-  else
-    write_scalars(blocks, array, description.component, scalars);
+  const auto write_field = [&](const ArrayInfo& array, int component, const Section& section) {
+    double* scalars = reinterpret_cast<double*>(memory + section.offset);
+    if (array.name == kUniformArray)
+      std::fill_n(scalars, info.cell_count, 1.0);
+    else
+      write_scalars(blocks, array, component, scalars);
+  };
+  write_field(*arrays.front(), description.field.component, header.scalars);
+  for (std::size_t i = 0; i < description.others.size(); ++i)
+    write_field(*arrays.at(i + 1), description.others[i].component, header.others[i]);
 }
 
-void hand_over_grid(const Block& block, Description description, const ArrayInfo& array, const ReaderRequest& request) {
-  vtkDataArray* values = find_array(block, array);
-  const int component = description.component;
-  GridValues plan;
-  if (values) {
-    plan = plan_grid_values(*values, component);
-  } else {  // The stand-in.
-    plan.type = ScalarType::kUint8;
-    plan.bytes = block.cell_count;
+void hand_over_grid(const Block& block, Description description, const FieldArrays& arrays,
+                    const ReaderRequest& request) {
+  std::vector<GridField> fields{plan_field(block, *arrays.front(), description.field)};
+  for (std::size_t i = 0; i < description.others.size(); ++i)
+    fields.push_back(plan_field(block, *arrays.at(i + 1), description.others[i]));
+  for (std::size_t i = 0; i < fields.size(); ++i) fields[i].twin = find_twin(fields, i);
+  std::uint64_t given_back = 0;
+  for (const GridField& field : fields) given_back += field.plan.is_raw && !field.twin ? field.plan.bytes : 0;
+  const auto [memory, header] = begin_memory(description, given_back, request, [&](Layout& layout, SharedHeader& h) {
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      Section& section = i == 0 ? h.values : h.others.at(i - 1);
+      fields[i].section = fields[i].twin ? fields[*fields[i].twin].section : layout.place(fields[i].plan.bytes);
+      section = fields[i].section;
+    }
+  });
+  for (const GridField& field : fields) {
+    std::byte* out = memory + field.section.offset;
+    if (field.twin) continue;
+    if (field.values)
+      move_grid_values(*field.values, field.plan, field.component, out);
+    else
+      std::fill_n(out, field.plan.bytes, std::byte{1});
   }
-  description.type = plan.type;
-  description.components = plan.components;
-  description.component = plan.component;
-  const auto [memory, header] =
-      begin_memory(description, plan.is_raw ? plan.bytes : 0, request,
-                   [&](Layout& layout, SharedHeader& h) { h.values = layout.place(plan.bytes); });
-  std::byte* out = memory + header.values.offset;
-  if (values)
-    move_grid_values(*values, plan, component, out);
-  else
-    std::fill_n(out, plan.bytes, std::byte{1});
 }
 
 void hand_over_info(const Description& description, const ReaderRequest& request) {

@@ -18,12 +18,16 @@ inline constexpr bool kLimitsMemory = true;
 /// Name of the array that stands in where a file has none; no file's own array can bear it, since then there is one.
 inline constexpr const char* kUniformArray = "(uniform)";
 
-/// Writes the memory file with the mesh and `array`, or the stand-in of that name; with the grid and `array`, whose
-/// memory is given back while it is copied; or with the description alone.
+/// The arrays of `Description::field` and of `Description::others`, in this order.
+using FieldArrays = std::vector<const ArrayInfo*>;
+
+/// Writes the memory file with the mesh and its fields, or the stand-in of that name; with the grid and its fields,
+/// whose memory is given back while they are copied; or with the description alone.
 /// @throws Error (kOutOfMemory) where it does not fit into the memory that the request allows.
-void hand_over_mesh(const std::vector<Block>& blocks, const Description& description, const ArrayInfo& array,
+void hand_over_mesh(const std::vector<Block>& blocks, const Description& description, const FieldArrays& arrays,
                     const ReaderRequest& request);
-void hand_over_grid(const Block& block, Description description, const ArrayInfo& array, const ReaderRequest& request);
+void hand_over_grid(const Block& block, Description description, const FieldArrays& arrays,
+                    const ReaderRequest& request);
 void hand_over_info(const Description& description, const ReaderRequest& request);
 
 }  // namespace tetravox::io

@@ -63,29 +63,37 @@ bool is_single_slice(const FileContents& contents) {
                                          vtkRectilinearGrid::SafeDownCast(contents.blocks.front()));
 }
 
-/// The array to draw; throws where there is no cell or no array.
-const ArrayInfo& choose_field(const ReaderRequest& request, const FileContents& contents, Description& description) {
+/// Throws where there is no cell.
+void require_cells(const std::string& file, const FileContents& contents, const DatasetInfo& info) {
+  if (info.cell_count > 0) return;
+  if (is_single_slice(contents))
+    throw Error(ErrorCode::kNothingToDraw,
+                "'" + file +
+                    "' holds a single slice, which has no volume: a grid needs two points or more along each axis; "
+                    "of a series of slices, name the directory");
+  if (info.left_out.unsupported > 0)
+    throw Error(ErrorCode::kUnsupported, "'" + file + "': its " + std::to_string(info.left_out.unsupported) +
+                                             " volume cells are of types that are not drawn (convex point sets, "
+                                             "Lagrange and Bezier cells): convert them to quadratic or linear cells");
+  throw Error(ErrorCode::kNothingToDraw, "'" + file + "' holds no volume cell to draw (" +
+                                             std::to_string(info.left_out.lower_dimension) + " of lower dimension, " +
+                                             std::to_string(info.left_out.ghost + info.left_out.blanked) +
+                                             " ghost or blanked)");
+}
+
+/// The array to draw, and those that are wanted beside it; throws where one is missing.
+FieldArrays choose_fields(const ReadOptions& options, Description& description) {
   const DatasetInfo& info = description.info;
-  if (info.cell_count == 0) {
-    if (is_single_slice(contents))
-      throw Error(ErrorCode::kNothingToDraw,
-                  "'" + request.file +
-                      "' holds a single slice, which has no volume: a grid needs two points or more along each axis; "
-                      "of a series of slices, name the directory");
-    if (info.left_out.unsupported > 0)
-      throw Error(ErrorCode::kUnsupported, "'" + request.file + "': its " + std::to_string(info.left_out.unsupported) +
-                                               " volume cells are of types that are not drawn (convex point sets, "
-                                               "Lagrange and Bezier cells): convert them to quadratic or linear cells");
-    throw Error(ErrorCode::kNothingToDraw, "'" + request.file + "' holds no volume cell to draw (" +
-                                               std::to_string(info.left_out.lower_dimension) + " of lower dimension, " +
-                                               std::to_string(info.left_out.ghost + info.left_out.blanked) +
-                                               " ghost or blanked)");
+  const ArrayInfo& first = info.arrays.at(choose_array(info, options.array));
+  description.association = first.association;
+  description.field = {first.name, choose_component(first, options.array)};
+  FieldArrays arrays{&first};
+  for (const ArrayRequest& other : options.others) {
+    const ArrayInfo& array = info.arrays.at(choose_other_array(info, other, first));
+    description.others.push_back({array.name, choose_component(array, other)});
+    arrays.push_back(&array);
   }
-  const ArrayInfo& array = info.arrays.at(choose_array(info, request.options.array));
-  description.array_name = array.name;
-  description.association = array.association;
-  description.component = array.components == 1 ? 0 : request.options.array.component.value_or(kMagnitude);
-  return array;
+  return arrays;
 }
 
 void add_notes(const FileContents& contents, DatasetInfo& info) {
@@ -120,13 +128,13 @@ void run(const ReaderRequest& request) {
   info.arrays = examine_arrays(blocks, request.file, info.notes);
   add_uniform_array(info);
   send_progress(0.93);
-  const ArrayInfo* array = request.options.only_info ? nullptr : &choose_field(request, contents, description);
-  if (array && info.grid)
-    hand_over_grid(blocks.front(), description, *array, request);
-  else if (array)
-    hand_over_mesh(blocks, description, *array, request);
+  if (request.options.only_info) return hand_over_info(description, request);
+  require_cells(request.file, contents, info);
+  const FieldArrays arrays = choose_fields(request.options, description);
+  if (info.grid)
+    hand_over_grid(blocks.front(), description, arrays, request);
   else
-    hand_over_info(description, request);
+    hand_over_mesh(blocks, description, arrays, request);
 }
 
 }  // namespace

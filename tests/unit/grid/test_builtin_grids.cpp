@@ -170,7 +170,7 @@ TEST(BuiltinGrids, InfoIsComplete) {
       EXPECT_EQ(info.bounds[axis].min, dataset.grid.shape.origin[axis]);
       EXPECT_DOUBLE_EQ(info.bounds[axis].max, place(dataset, axis, 11));
     }
-    ASSERT_EQ(info.arrays.size(), 1u);
+    ASSERT_EQ(info.arrays.size(), 1 + dataset.other_grids.size());
     EXPECT_EQ(info.arrays[0].name, dataset.grid.array_name);
     EXPECT_EQ(info.arrays[0].type, "float32");
     const std::vector<float> values = values_of<float>(dataset);

@@ -99,6 +99,22 @@ TEST(PrepareGrid, RefusesShapesThatMakeNoSense) {
   expect_refused([](GridData& grid) { grid.component = 1; });
 }
 
+TEST(PrepareGrid, FurtherFieldsHaveTheShapeOfTheFirst) {
+  const std::array<std::uint32_t, 3> dimensions{9, 4, 3};
+  const auto rising = make_values(dimensions, [](float x, float, float) { return x; });
+  const auto falling = make_values(dimensions, [](float x, float y, float) { return 100.0f - x * y; });
+  const GridData first = view(rising, ScalarType::kFloat32, dimensions);
+  GridData other = view(falling, ScalarType::kFloat32, dimensions);
+  const PreparedGrid grid = prepare_grid(first, {other, first});
+  ASSERT_EQ(grid.others.size(), 2u);
+  EXPECT_EQ(grid.scalar_range.max, 8.0);
+  EXPECT_EQ(grid.others[0].scalar_range.min, 100.0 - 8.0 * 3.0);
+  EXPECT_EQ(grid.others[0].bricks.count(), grid.bricks.count());
+  EXPECT_EQ(grid.others[1].scalar_range.max, 8.0);
+  other.shape.spacing[1] = 2.0;
+  EXPECT_THROW(prepare_grid(first, {other}), Error);
+}
+
 TEST(GridFrame, UnevenAxesKeepTheirEnds) {
   GridShape shape;
   shape.dimensions = {4, 2, 2};

@@ -69,7 +69,7 @@ inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * 
 inline Dataset make_embedded(const std::string& name, std::uint64_t cells = 0, const std::string& array = {}) {
   for (const mesh::BuiltinMeshEntry& entry : mesh::builtin_meshes())
     if (entry.name == name)
-      return mesh::make_builtin_mesh(entry, cells == 0 ? entry.default_cells : cells, {array, {}, {}}, name);
+      return mesh::make_builtin_mesh(entry, {cells == 0 ? entry.default_cells : cells, {array, {}, {}}, {}}, name);
   ADD_FAILURE() << name;
   return {};
 }

@@ -141,10 +141,10 @@ TEST(ValueHistogram, RefusesWhatMakesNoSense) {
 /// The mean gradient magnitude and its spread.
 std::pair<double, double> gradient_moments(const Histogram2D& histogram) {
   double sum = 0.0, square = 0.0, weight = 0.0;
-  const double step = (histogram.gradient_range.max - histogram.gradient_range.min) / histogram.gradient_bins;
+  const double step = (histogram.other_range.max - histogram.other_range.min) / histogram.other_bins;
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
     const auto row = static_cast<double>(i / static_cast<std::size_t>(histogram.bins));
-    const double gradient = histogram.gradient_range.min + (row + 0.5) * step;
+    const double gradient = histogram.other_range.min + (row + 0.5) * step;
     sum += histogram.counts[i] * gradient;
     square += histogram.counts[i] * gradient * gradient;
     weight += histogram.counts[i];
@@ -156,7 +156,7 @@ std::pair<double, double> gradient_moments(const Histogram2D& histogram) {
 TEST(GradientHistogram, OfALinearFieldLiesAtItsSlope) {
   const auto field = [](const Vector3& p) { return 5.0 + 3.0 * p[0] + 4.0 * p[1]; };
   HistogramOptions options;
-  options.gradient_range = ValueRange{0.0, 10.0};
+  options.other_range = ValueRange{0.0, 10.0};
   const auto [mesh_mean, mesh_spread] = gradient_moments(make_gradient_histogram(make_mesh_of(field, 4), options));
   EXPECT_NEAR(mesh_mean, 5.0, 0.05);
   EXPECT_LT(mesh_spread, 0.05);
@@ -173,8 +173,8 @@ TEST(GradientHistogram, OfALinearFieldLiesAtItsSlope) {
 
 TEST(GradientHistogram, FindsItsOwnRange) {
   const Histogram2D histogram = make_gradient_histogram(make_grid_of([](const Vector3& p) { return 2.0 * p[0]; }, 9));
-  EXPECT_EQ(histogram.gradient_range.min, 0.0);
-  EXPECT_NEAR(histogram.gradient_range.max, 2.0, 1e-4);
+  EXPECT_EQ(histogram.other_range.min, 0.0);
+  EXPECT_NEAR(histogram.other_range.max, 2.0, 1e-4);
   EXPECT_NEAR(total(histogram.counts), 1.0, 1e-9);
   const Histogram2D flat = make_gradient_histogram(make_mesh_of([](const Vector3&) { return 3.0; }, 2));
   EXPECT_NEAR(total(flat.counts), 1.0, 1e-9);

@@ -96,6 +96,29 @@ TEST(Builtins, WrongNamesAndOptionsAreRefused) {
   EXPECT_NE(refusal_of("hydrogen?type=half").find("uint8, int16"), std::string::npos);
 }
 
+TEST(Builtins, FurtherArraysComeBesideTheFirst) {
+  const Dataset duct = make_builtin("duct?cells=500", {"pressure", {}, {}}, {{"speed", {}, {}}, {"pressure", {}, {}}});
+  ASSERT_EQ(duct.mesh.others.size(), 2u);
+  EXPECT_EQ(duct.mesh.others[0].array_name, "speed");
+  EXPECT_TRUE(
+      std::ranges::equal(duct.mesh.others[0].scalars, make_builtin("duct?cells=500", {"speed", {}, {}}).mesh.scalars));
+  EXPECT_TRUE(std::ranges::equal(duct.mesh.others[1].scalars, duct.mesh.scalars));
+  EXPECT_THROW(make_builtin("duct", {"pressure", {}, {}}, {{"volume", {}, {}}}), Error);
+
+  const Dataset atom = make_builtin("hydrogen?size=20&type=float64", {}, {{"wave", {}, {}}});
+  EXPECT_EQ(atom.grid.array_name, "density");
+  ASSERT_EQ(atom.info.arrays.size(), 2u);
+  ASSERT_EQ(atom.other_grids.size(), 1u);
+  const auto values = [](const GridData& grid, std::size_t i) {
+    return reinterpret_cast<const double*>(grid.values.data())[i];
+  };
+  for (std::size_t i = 0; i < 8000; i += 7) {
+    const double wave = 2.0 * values(atom.other_grids[0], i) - 1.0;
+    EXPECT_NEAR(values(atom.grid, i), wave * wave, 1e-12);
+  }
+  EXPECT_LT(atom.info.arrays[1].component_ranges[0].min, 0.5);
+}
+
 TEST(Builtins, ArraysThatAreNotThereAreRefused) {
   EXPECT_THROW(make_builtin("duct", {"temperature", {}, {}}), Error);
   EXPECT_THROW(make_builtin("hydrogen", {"temperature", {}, {}}), Error);
