@@ -77,6 +77,9 @@ struct SurfaceOption {
 struct EffectOptions {
   bool use_headlight = false;
   std::optional<std::vector<Light>> lights;
+  std::optional<std::string> environment;  ///< empty text: drops the scene's
+  std::optional<double> environment_intensity, environment_rotation;
+  std::optional<Vector3> environment_up;
   std::optional<Material> material;
   std::optional<GradientMethod> gradient;
   std::optional<double> gradient_threshold;
@@ -135,7 +138,7 @@ struct HistogramCommandOptions {
 };
 
 struct ListOptions {
-  enum class Topic { kPresets, kReaders, kBuiltins, kMethods };
+  enum class Topic { kPresets, kReaders, kBuiltins, kMethods, kEnvironments };
   Topic topic = Topic::kPresets;
 };
 

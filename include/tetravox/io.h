@@ -6,6 +6,7 @@
 /// when it crashes, hangs or eats too much memory, that is an `Error` here and nothing else.
 
 #include "tetravox/dataset.h"
+#include "tetravox/environment.h"
 #include "tetravox/image.h"
 #include "tetravox/progress.h"
 #include "tetravox/scene.h"
@@ -36,6 +37,14 @@ Dataset read_dataset(const std::string& path, const ReadOptions& options = {}, c
 
 /// Formats that can be read: name, and file endings with a remark.
 std::vector<std::pair<std::string, std::string>> reader_names();
+
+/// Surroundings from PNG or EXR pictures, or "builtin:NAME".
+///
+/// One file is equirectangular, twice as wide as high. A cube is a directory with px, nx, py, ny, pz and nz, each .exr
+/// or .png, or a path whose `*` stands for these names. PNG values are taken as displayed, 0 to 1, without alpha; those
+/// of EXR (channels R, G, B, or Y alone) as radiance, where negative ones count as 0.
+/// @throws Error that names the file: kFileNotFound, kBadFile, kUnsupported, kInvalidArgument, kOutOfMemory.
+Environment read_environment(const std::string& path);
 
 struct WriteOptions {
   Color background{0, 0, 0};

@@ -212,7 +212,7 @@ class GridRenderer final : public FrameRenderer {
   const PreparedGrid& drawn() const { return field_.middles ? *field_.middles : grid_; }
   void prepare_filter(const RenderSettings& settings);
   GradientSource choose_gradients(const RenderSettings& settings) const;
-  void describe(const RenderSettings& settings, FrameParts& frame);
+  void describe(const RenderSettings& settings, const FrameContext& context, FrameParts& frame);
   ShadowedBody shadowed_body() const;
   void prepare_shadows(const Camera& camera, const RenderSettings& settings, const FrameContext& context);
   struct Pass;
@@ -273,7 +273,7 @@ GradientSource GridRenderer::choose_gradients(const RenderSettings& settings) co
 }
 
 /// Fills the effects of a frame.
-void GridRenderer::describe(const RenderSettings& settings, FrameParts& frame) {
+void GridRenderer::describe(const RenderSettings& settings, const FrameContext& context, FrameParts& frame) {
   if (!has_centroids_) optics::build_centroid_table(antiderivative_, centroids_);
   has_centroids_ = true;
   IllustratedFrame illustrated{frame.view.camera,
@@ -283,7 +283,8 @@ void GridRenderer::describe(const RenderSettings& settings, FrameParts& frame) {
                                grid_.scalar_range,
                                diagonal(),
                                {},
-                               &centroids_};
+                               &centroids_,
+                               context.environment};
   const auto& axes = frame.view.camera.axes;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
@@ -465,7 +466,7 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
   frame.kernels = &kernels;
   frame.job = make_job(settings, tables);
   frame.job.grid = &frame.rays.grid;
-  if (has_effects) describe(settings, frame);
+  if (has_effects) describe(settings, context, frame);
   frame.illustration.effects.record = pass.record;
   if (settings.wants_depth) frame.illustration.effects.depth = image.depth.data();
   frame.has_clipping = !settings.clipping.shapes.empty();
