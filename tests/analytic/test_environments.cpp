@@ -126,6 +126,7 @@ TEST_P(Surrounded, WhiteIsOneEverywhere) {
   // The volume is as it is; a surface has what a light of strength 1 before it gives, and its highlight.
   const Environment white = make_builtin_environment("white");
   const tests::Body body = cube(14, norm);
+  Renderer volume = make_renderer(body, kHomogeneous, white), surface = make_renderer(body, kNothing, white);
   RenderSettings settings = make_settings(1e-6);
   for (const double threshold : {0.0, 2.0}) {
     settings.lighting.gradient_threshold = threshold;
@@ -133,8 +134,7 @@ TEST_P(Surrounded, WhiteIsOneEverywhere) {
     for (const auto& [name, camera] : standard_cameras()) {
       RenderSettings unlit = settings;
       unlit.lighting = {};
-      EXPECT_TRUE(tests::images_agree(draw(body, kHomogeneous, camera, settings, white),
-                                      body.draw(kHomogeneous, camera, unlit), 1e-5))
+      EXPECT_TRUE(tests::images_agree(volume.render(camera, settings), body.draw(kHomogeneous, camera, unlit), 1e-5))
           << name;
     }
   }
@@ -142,7 +142,7 @@ TEST_P(Surrounded, WhiteIsOneEverywhere) {
   settings.lighting.environment->intensity = 0.5;
   settings.surfaces = {{0.7, {0.7, 0.5, 0.3}, {0.7, 0.5, 0.3}, 1.0, true}};
   for (const auto& [name, camera] : standard_cameras()) {
-    const Image image = draw(body, kNothing, camera, settings, white);
+    const Image image = surface.render(camera, settings);
     EXPECT_GT(tests::count_covered(image), 200u) << name;
     for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
       if (image.pixels[i + 3] == 0.0f) continue;
@@ -284,14 +284,15 @@ TEST_P(Surrounded, TurningEverythingChangesNothing) {
   RenderSettings turned = settings;
   turned.lighting.environment->rotation = 90.0;
   const tests::Body body = linear_cube(slope), turned_body = linear_cube(turn(slope));
+  Renderer still = make_renderer(body, kHomogeneous, room), moving = make_renderer(turned_body, kHomogeneous, room);
   for (const auto& [name, camera] : standard_cameras()) {
     Camera moved = camera;
     moved.position = turn(camera.position);
     moved.focal_point = turn(camera.focal_point);
     moved.view_up = turn(camera.view_up);
-    const Image image = draw(body, kHomogeneous, camera, settings, room);
-    EXPECT_TRUE(tests::images_agree(draw(turned_body, kHomogeneous, moved, turned, room), image, 2e-4)) << name;
-    EXPECT_FALSE(tests::images_agree(draw(turned_body, kHomogeneous, moved, settings, room), image, 0.02)) << name;
+    const Image image = still.render(camera, settings);
+    EXPECT_TRUE(tests::images_agree(moving.render(moved, turned), image, 2e-4)) << name;
+    EXPECT_FALSE(tests::images_agree(moving.render(moved, settings), image, 0.02)) << name;
   }
 }
 
