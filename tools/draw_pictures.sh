@@ -77,6 +77,10 @@ methods  shadow-mesh       $mesh --isosurface 0.45:$white --volume off $side
 methods  shadow-grid       $grid --isosurface 0.5:$white --volume off $side
 methods  open-mesh         $mesh --isosurface 0.45:$white --volume off --ambient-occlusion 64 --material 0.7,0.3,0.1,32
 methods  open-grid         $grid --isosurface 0.5:$white --volume off --ambient-occlusion 64 --material 0.7,0.3,0.1,32
+methods  studio-mesh       $mesh --isosurface 0.45:$white --volume off --environment builtin:studio --material 0.05,0.6,0.6,120
+methods  studio-grid       builtin:hydrogen?size=64&type=float32 --resolution 300,300 $atom 19 --isosurface 0.08:$white --volume off --environment builtin:studio --material 0.05,0.6,0.6,120
+methods  sky-mesh          $mesh --transfer-function viridis:peaks=3 --range 0.1,1.04 --unit-distance 0.004 --environment builtin:sky --material 0.1,0.9,0.4,40
+methods  sky-grid          builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 --filter bspline --transfer-function viridis:peaks=5 --range 0.5,0.9 --unit-distance 0.002 --environment builtin:sky --material 0.1,0.9,0.4,40
 methods  clip-mesh         $mesh --isosurface 0.45 --transfer-function inferno:peaks=4 --range 0.05,1.04 --unit-distance 0.016 --clip-plane 0,0,0,-0.5,1,0.2
 methods  clip-grid         builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 --transfer-function viridis:peaks=5 --range 0.3,0.9 --unit-distance 0.003 --shade --clip-sphere outside:0.5,0.2,0.8,0.45
 methods  weight-mesh       builtin:duct?cells=300000 --array speed --resolution 300,300 --transfer-function turbo:constant=0.5 $above 33 --opacity-weight scalar-difference --opacity-weight-scale 0.2

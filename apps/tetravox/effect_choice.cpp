@@ -1,5 +1,6 @@
 #include "apps/tetravox/effect_choice.h"
 
+#include "tetravox/environment.h"
 #include "tetravox/error.h"
 #include "tetravox/grid.h"
 #include "tetravox/io.h"
@@ -11,8 +12,20 @@
 namespace tetravox::tool {
 namespace {
 
+void override_environment(const EffectOptions& options, std::optional<EnvironmentLight>& environment) {
+  if (options.environment) {
+    environment.reset();
+    if (!options.environment->empty()) environment = EnvironmentLight{.file = *options.environment};
+  }
+  if (!environment) return;
+  environment->intensity = options.environment_intensity.value_or(environment->intensity);
+  environment->rotation = options.environment_rotation.value_or(environment->rotation);
+  environment->up = options.environment_up.value_or(environment->up);
+}
+
 void override_lighting(const EffectOptions& options, Lighting& lighting) {
   if (options.lights) lighting.lights = *options.lights;
+  override_environment(options, lighting.environment);
   lighting.material = options.material.value_or(lighting.material);
   lighting.gradient = options.gradient.value_or(lighting.gradient);
   lighting.gradient_threshold = options.gradient_threshold.value_or(lighting.gradient_threshold);
@@ -20,7 +33,9 @@ void override_lighting(const EffectOptions& options, Lighting& lighting) {
   lighting.shadows = options.shadows.value_or(lighting.shadows);
   lighting.shadow_resolution = options.shadow_resolution.value_or(lighting.shadow_resolution);
   lighting.ambient_occlusion = options.ambient_occlusion.value_or(lighting.ambient_occlusion);
-  if (options.wants_light() && !options.lights && !lighting.is_lit()) lighting.lights.emplace_back();
+  // Surroundings are light enough, unless the headlight is asked for by its name.
+  const bool is_dark = lighting.lights.empty() && (!lighting.environment || options.use_headlight);
+  if (options.wants_light() && !options.lights && is_dark) lighting.lights.emplace_back();
 }
 
 void override_surfaces(const EffectOptions& options, std::vector<Isosurface>& surfaces) {
@@ -72,6 +87,16 @@ std::vector<std::string> check_effects(const EffectOptions& options, const Rende
   std::vector<std::string> lines;
   if (settings.surfaces.empty() && (options.surface_back_color || options.are_surfaces_one_sided))
     lines.push_back("--isosurface-back-color and --one-sided change nothing: there is no --isosurface");
+  const Lighting& lighting = settings.lighting;
+  if (!lighting.environment &&
+      (options.environment_intensity || options.environment_rotation || options.environment_up))
+    lines.push_back("--environment-intensity, -rotation and -up change nothing: there is no --environment");
+  if (lighting.lights.empty() && lighting.environment &&
+      options.shadows.value_or(ShadowKind::kNone) != ShadowKind::kNone)
+    lines.push_back(
+        "--shadows changes nothing: surroundings throw none, and there are no other lights; --ambient-occlusion "
+        "darkens "
+        "hollows");
   if (settings.clipping.shapes.size() < 2 && options.use_union)
     lines.push_back("--clip-combine changes nothing: there are no two shapes to combine");
   if (settings.opacity_weight == OpacityWeight::kNone && options.weight_scale)
@@ -92,10 +117,13 @@ void SceneParts::load(const Scene& scene, double reader_timeout, const Progress&
       throw Error(ErrorCode::kUnsupported, "'" + volume->file + "' is a mesh: a clip volume must be a grid");
     volumes_.push_back({i, std::make_unique<PreparedGrid>(prepare_grid(dataset.grid, progress))});
   }
+  if (const auto& environment = settings.lighting.environment)
+    environment_ = std::make_unique<Environment>(read_environment(environment->file));
 }
 
 void SceneParts::attach(Renderer& renderer) const {
   for (const Volume& volume : volumes_) renderer.set_clip_volume(volume.shape, *volume.grid);
+  if (environment_) renderer.set_environment(*environment_);
 }
 
 }  // namespace tetravox::tool

@@ -4,6 +4,7 @@
 
 #include "apps/tetravox/options.h"
 
+#include "tetravox/environment.h"
 #include "tetravox/grid.h"
 #include "tetravox/progress.h"
 #include "tetravox/render.h"
@@ -39,6 +40,7 @@ class SceneParts {
     std::unique_ptr<PreparedGrid> grid;
   };
   std::vector<Volume> volumes_;
+  std::unique_ptr<Environment> environment_;
 };
 
 }  // namespace tetravox::tool

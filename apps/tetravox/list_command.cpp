@@ -2,6 +2,7 @@
 #include "apps/tetravox/method_choice.h"
 #include "apps/tetravox/text.h"
 
+#include "tetravox/environment.h"
 #include "tetravox/grid.h"
 #include "tetravox/io.h"
 #include "tetravox/multidimensional.h"
@@ -27,8 +28,7 @@ Rows instruction_set_rows() {
   return rows;
 }
 
-Rows builtin_rows() {
-  Rows rows = builtin_names();
+Rows builtin_rows(Rows rows) {
   for (auto& row : rows) row.first = "builtin:" + row.first;
   return rows;
 }
@@ -54,7 +54,10 @@ void run_list(const ListOptions& options) {
     case ListOptions::Topic::kBuiltins:
       std::cout << with_title(
           "Embedded datasets; each takes a size, as in builtin:duct?cells=1000000 or builtin:hydrogen?size=64:",
-          builtin_rows());
+          builtin_rows(builtin_names()));
+      break;
+    case ListOptions::Topic::kEnvironments:
+      std::cout << with_title("Embedded surroundings for --environment:", builtin_rows(builtin_environment_names()));
       break;
     case ListOptions::Topic::kMethods:
       std::cout << with_title("Sources (--source):", source_names())

@@ -194,7 +194,8 @@ void add_method(CLI::App& app, RenderOptions& options) {
 }
 
 ListOptions::Topic topic_from_name(const std::string& text) {
-  return static_cast<ListOptions::Topic>(parse_choice("list", text, {"presets", "readers", "builtins", "methods"}));
+  return static_cast<ListOptions::Topic>(
+      parse_choice("list", text, {"presets", "readers", "builtins", "methods", "environments"}));
 }
 
 /// Usage lines in the order in which people type.
@@ -271,8 +272,8 @@ Parser::Parser() {
   add_raw_layout(*histogram, histogram_options.input);
   add_histogram(*histogram, histogram_options);
 
-  list = add_command(app, "list", "List presets, readers, builtins or methods");
-  list->add_option("TOPIC", topic, "presets, readers, builtins or methods")->type_name("");
+  list = add_command(app, "list", "List presets, readers, builtins, methods or environments");
+  list->add_option("TOPIC", topic, "presets, readers, builtins, methods or environments")->type_name("");
 }
 
 /// The first argument that nothing wanted, with the option that was probably meant.
@@ -325,7 +326,7 @@ CommandLine Parser::result() {
     return histogram_options;
   }
   if (list->parsed()) {
-    if (topic.empty()) throw UsageError("list what? presets, readers, builtins or methods");
+    if (topic.empty()) throw UsageError("list what? presets, readers, builtins, methods or environments");
     return ListOptions{topic_from_name(topic)};
   }
   throw UsageError("name a command: render, info, histogram or list");

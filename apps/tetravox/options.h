@@ -95,6 +95,9 @@ struct SurfaceOption {
 struct EffectOptions {
   bool use_headlight = false;
   std::optional<std::vector<Light>> lights;
+  std::optional<std::string> environment;  ///< empty text: drops the scene's
+  std::optional<double> environment_intensity, environment_rotation;
+  std::optional<Vector3> environment_up;
   std::optional<Material> material;
   std::optional<GradientMethod> gradient;
   std::optional<double> gradient_threshold;
@@ -156,7 +159,7 @@ struct HistogramCommandOptions {
 };
 
 struct ListOptions {
-  enum class Topic { kPresets, kReaders, kBuiltins, kMethods };
+  enum class Topic { kPresets, kReaders, kBuiltins, kMethods, kEnvironments };
   Topic topic = Topic::kPresets;
 };
 

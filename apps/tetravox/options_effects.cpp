@@ -40,6 +40,12 @@ std::vector<Light> parse_lights(const std::string& option, const std::string& te
   return lights;
 }
 
+/// A name of surroundings; "none" is empty.
+std::string parse_environment(const std::string& option, const std::string& text) {
+  if (text.empty()) throw UsageError(option + ": the text is empty");
+  return text == "none" ? std::string() : text;
+}
+
 Material parse_material(const std::string& option, const std::string& text) {
   const std::vector<double> n = parse_numbers(option, text, 4, "ambient,diffuse,specular,shininess");
   return {n[0], n[1], n[2], n[3]};
@@ -129,6 +135,16 @@ void add_light(CLI::App& app, EffectOptions& effects) {
       "headlight, directional:x,y,z (the way it shines), point:x,y,z, or none; several with ';' between; :r,g,b adds a "
       "colour, *k an intensity",
       store(effects.lights, parse_lights));
+  add(app, "--environment", "FILE",
+      "Light from surroundings: an equirectangular PNG or EXR, six faces (a directory, or sky_*.png), builtin:NAME "
+      "(tetravox list environments), or none",
+      store(effects.environment, parse_environment));
+  add(app, "--environment-intensity", "K", "Factor of their light (default: 1)",
+      store(effects.environment_intensity, parse_number));
+  add(app, "--environment-rotation", "DEGREES", "Turn them about their up, counter-clockwise from above (default: 0)",
+      store(effects.environment_rotation, parse_number));
+  add(app, "--environment-up", "X,Y,Z", "World direction that is up in them (default: 0,0,1)",
+      store(effects.environment_up, parse_vector));
   add(app, "--material", "A,D,S,N", "Ambient, diffuse, specular, shininess (default: 0.3,0.7,0.3,32)",
       store(effects.material, parse_material));
   add(app, "--gradient", "NAME", "Where normals come from (tetravox list methods)",

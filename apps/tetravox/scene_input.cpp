@@ -91,6 +91,7 @@ void replace_paths(Scene& scene, const Replace& replace) {
   for (ClipShape& shape : scene.settings.clipping.shapes)
     if (auto* volume = std::get_if<ClipVolume>(&shape.shape)) volume->file = replace(volume->file);
   if (scene.multidimensional) scene.multidimensional->table_file = replace(scene.multidimensional->table_file);
+  if (auto& environment = scene.settings.lighting.environment) environment->file = replace(environment->file);
 }
 
 }  // namespace

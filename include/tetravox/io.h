@@ -6,6 +6,7 @@
 /// when it crashes, hangs or eats too much memory, that is an `Error` here and nothing else.
 
 #include "tetravox/dataset.h"
+#include "tetravox/environment.h"
 #include "tetravox/image.h"
 #include "tetravox/progress.h"
 #include "tetravox/scene.h"
@@ -51,6 +52,14 @@ struct FunctionTable {
 /// opacity; or an .npy file of float32, float64 (from 0 to 1) or uint8 (from 0 to 255), [n2][n1][4] or [n3][n2][n1][4].
 /// @throws Error that names the file: kFileNotFound, kBadFile, kUnsupported, kInvalidArgument for other endings.
 FunctionTable read_function_table(const std::string& path, std::size_t variables);
+
+/// Surroundings from PNG or EXR pictures, or "builtin:NAME".
+///
+/// One file is equirectangular, twice as wide as high. A cube is a directory with px, nx, py, ny, pz and nz, each .exr
+/// or .png, or a path whose `*` stands for these names. PNG values are taken as displayed, 0 to 1, without alpha; those
+/// of EXR (channels R, G, B, or Y alone) as radiance, where negative ones count as 0.
+/// @throws Error that names the file: kFileNotFound, kBadFile, kUnsupported, kInvalidArgument, kOutOfMemory.
+Environment read_environment(const std::string& path);
 
 struct WriteOptions {
   Color background{0, 0, 0};

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Light: what makes shape visible. Blinn-Phong as in Engel and Ertl 2002, shadows, ambient occlusion.
+/// Light: what makes shape visible. Blinn-Phong as in Engel and Ertl 2002, shadows, ambient occlusion, surroundings.
 ///
 /// Without lights a picture is emission and absorption alone (docs/conventions.md). With them, the emitted colour c of
 /// each stretch of a ray is multiplied by the light that arrives there, and a highlight is added
@@ -10,6 +10,7 @@
 #include "tetravox/transfer_function.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,8 +53,18 @@ enum class ShadowKind {
   kVolume  ///< optical depth towards each light, on a lattice that it sees
 };
 
+/// Light from all around, as a picture of the surroundings has it (environment.h). It throws no shadows; ambient
+/// occlusion darkens its diffuse part.
+struct EnvironmentLight {
+  std::string file;        ///< as `read_environment` takes it, or "builtin:NAME"; the renderer is handed what it holds
+  double intensity = 1.0;  ///< >= 0
+  double rotation = 0.0;   ///< degrees about `up`, counter-clockwise as seen from above; see `environment_axes`
+  Vector3 up{0, 0, 1};     ///< world direction of the picture's upper edge; any length but 0
+};
+
 struct Lighting {
   std::vector<Light> lights;
+  std::optional<EnvironmentLight> environment;
   Material material;
   GradientMethod gradient = GradientMethod::kDefault;
   /// Gradient magnitude at which shading is at half its strength, in units of value range / diagonal of the bounds;
@@ -64,7 +75,7 @@ struct Lighting {
   int shadow_resolution = 128;       ///< lattice points along each axis, in [8, 512]
   int ambient_occlusion = 0;         ///< directions over the sphere, in [0, 1024]; 0: none
   std::uint64_t occlusion_seed = 1;  ///< of the order of directions
-  bool is_lit() const { return !lights.empty(); }
+  bool is_lit() const { return !lights.empty() || environment.has_value(); }
 };
 
 /// Names of enumerators as on the command line and in scene files, and back.

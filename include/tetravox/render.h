@@ -6,6 +6,7 @@
 
 #include "tetravox/camera.h"
 #include "tetravox/clipping.h"
+#include "tetravox/environment.h"
 #include "tetravox/grid.h"
 #include "tetravox/image.h"
 #include "tetravox/isosurface.h"
@@ -127,6 +128,11 @@ class Renderer {
 
   /// The grid of the clip volume at index `shape` of `RenderSettings::clipping`. Views it.
   void set_clip_volume(std::size_t shape, const PreparedGrid& grid);
+
+  /// The surroundings that `Lighting::environment` stands for. Views them. They are filtered at the next frame that
+  /// they light, and again only where the material's shininess has changed.
+  /// @throws Error (kInvalidArgument); see `validate_environment`.
+  void set_environment(const Environment& environment);
 
   /// The picture. The same bytes for any number of threads, on every run and with every instruction set.
   /// @throws Error: kInvalidArgument for settings or camera out of range, kOutOfMemory, kCancelled.

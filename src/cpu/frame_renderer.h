@@ -3,6 +3,7 @@
 /// What draws one kind of data: behind `Renderer`, which validates for it.
 
 #include "src/cpu/kernels/kernels.h"
+#include "src/optics/environment_filter.h"
 #include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
 
@@ -21,6 +22,7 @@ struct FrameContext {
   const Progress& progress;
   std::span<const PreparedGrid* const> clip_volumes;  ///< one a shape of the clipping, null where it is no volume
   std::uint64_t clip_number = 0;                      ///< changes with them
+  const optics::FilteredEnvironment* environment = nullptr;  ///< where the lighting has one
 };
 
 /// Draws frames of one dataset. Not safe for concurrent calls.

@@ -230,7 +230,7 @@ class GridRenderer final : public FrameRenderer {
   void prepare_filter(const RenderSettings& settings);
   void fill_lattices(const FrameParts& frame, std::uint32_t index, Workspace& workspace, MarchBrick& brick) const;
   GradientSource choose_gradients(const RenderSettings& settings) const;
-  void describe(const RenderSettings& settings, FrameParts& frame);
+  void describe(const RenderSettings& settings, const FrameContext& context, FrameParts& frame);
   ShadowedBody shadowed_body() const;
   void prepare_shadows(const Camera& camera, const RenderSettings& settings, const FrameContext& context);
   struct Pass;
@@ -294,7 +294,7 @@ GradientSource GridRenderer::choose_gradients(const RenderSettings& settings) co
 }
 
 /// Fills the effects of a frame.
-void GridRenderer::describe(const RenderSettings& settings, FrameParts& frame) {
+void GridRenderer::describe(const RenderSettings& settings, const FrameContext& context, FrameParts& frame) {
   if (!has_centroids_ && !domain_.is_set()) {
     optics::build_centroid_table(antiderivative_, centroids_);
     has_centroids_ = true;
@@ -306,7 +306,8 @@ void GridRenderer::describe(const RenderSettings& settings, FrameParts& frame) {
                                grid_.scalar_range,
                                diagonal(),
                                {},
-                               has_centroids_ ? &centroids_ : nullptr};
+                               has_centroids_ ? &centroids_ : nullptr,
+                               context.environment};
   const auto& axes = frame.view.camera.axes;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
@@ -511,7 +512,7 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
   frame.kernels = &kernels;
   frame.job = make_job(settings, tables);
   frame.job.grid = &frame.rays.grid;
-  if (has_effects) describe(settings, frame);
+  if (has_effects) describe(settings, context, frame);
   frame.illustration.effects.record = pass.record;
   if (settings.wants_depth) frame.illustration.effects.depth = image.depth.data();
   frame.has_clipping = !settings.clipping.shapes.empty();

@@ -55,10 +55,31 @@ SurfaceSheet make_sheet(const Isosurface& surface, const optics::ScalarMap& map)
   return sheet;
 }
 
+/// Directions of the camera frame -> those of the environment, and what it holds there.
+EnvironmentMaps make_environment_maps(const EnvironmentLight& light, const optics::FilteredEnvironment& filtered,
+                                      const CameraFrame& camera) {
+  EnvironmentMaps maps;
+  const std::array<Vector3, 3> axes = environment_axes(light.up, light.rotation);
+  for (std::size_t row = 0; row < 3; ++row) {
+    const Vector3 seen = to_camera(camera, axes[row]);
+    for (std::size_t column = 0; column < 3; ++column)
+      maps.map_from_camera[3 * row + column] = static_cast<float>(seen[column]);
+    maps.mean[row] = filtered.mean[row];
+  }
+  maps.diffuse = {filtered.diffuse.size, filtered.diffuse.records.data()};
+  maps.specular = {filtered.specular.size, filtered.specular.records.data()};
+  maps.intensity = static_cast<float>(light.intensity);
+  return maps;
+}
+
 void fill_shading(const Lighting& lighting, const IllustratedFrame& frame, Illustration& illustration) {
   for (const Light& light : lighting.lights) illustration.lights.push_back(make_light(light, frame));
   Shading& shading = illustration.shading;
   shading.lights = illustration.lights;
+  if (lighting.environment) {
+    illustration.environment = make_environment_maps(*lighting.environment, *frame.environment, frame.camera);
+    shading.environment = &illustration.environment;
+  }
   shading.ambient = static_cast<float>(lighting.material.ambient);
   shading.diffuse = static_cast<float>(lighting.material.diffuse);
   shading.specular = static_cast<float>(lighting.material.specular);

@@ -7,6 +7,7 @@
 #include "src/cpu/shadows.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/centroid_table.h"
+#include "src/optics/environment_filter.h"
 #include "tetravox/render.h"
 
 #include <array>
@@ -27,6 +28,7 @@ struct IllustratedFrame {
   /// Row major: gradients as the source holds them -> camera frame, stored scalars a local length.
   std::array<double, 9> camera_from_gradient{};
   const optics::CentroidTable* centroids = nullptr;
+  const optics::FilteredEnvironment* environment = nullptr;  ///< where the lighting has one
 };
 
 /// Owns what `effects` points at: not to be moved.
@@ -38,6 +40,7 @@ struct Illustration {
   std::vector<LightSource> lights;
   std::vector<std::vector<ShadowMap>> shadows;  ///< of each light
   OcclusionMap occlusion;
+  EnvironmentMaps environment;
   std::vector<SurfaceSheet> sheets;
   Shading shading;
   Effects effects;

@@ -160,7 +160,8 @@ class MeshRenderer final : public FrameRenderer {
   using WalkKernel = WalkStatistics (*)(const WalkJob&);
   WalkKernel choose_kernel(const Kernels& kernels, const RenderSettings& settings, bool has_effects) const;
   void prepare_effects(const RenderSettings& settings);
-  void describe(const RenderSettings& settings, Frame& frame, Illustration& illustration) const;
+  void describe(const RenderSettings& settings, const FrameContext& context, Frame& frame,
+                Illustration& illustration) const;
   void draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics);
 
   const PreparedMesh& mesh_;
@@ -231,7 +232,8 @@ void MeshRenderer::prepare_effects(const RenderSettings& settings) {
 }
 
 /// Fills the effects of a frame, and points it at the gradients.
-void MeshRenderer::describe(const RenderSettings& settings, Frame& frame, Illustration& illustration) const {
+void MeshRenderer::describe(const RenderSettings& settings, const FrameContext& context, Frame& frame,
+                            Illustration& illustration) const {
   frame.mesh.gradients = gradients_.records.empty() ? nullptr : gradients_.records.front().data();
   frame.mesh.has_cell_gradients = gradients_.method == GradientMethod::kCell;
   for (std::size_t axis = 0; axis < domain_.others.size(); ++axis)
@@ -243,7 +245,8 @@ void MeshRenderer::describe(const RenderSettings& settings, Frame& frame, Illust
                                mesh_.scalar_range,
                                diagonal(),
                                {},
-                               has_centroids_ ? &centroids_ : nullptr};
+                               has_centroids_ ? &centroids_ : nullptr,
+                               context.environment};
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
       illustrated.camera_from_gradient[3 * row + column] = frame.camera.axes[row][column];
@@ -275,7 +278,7 @@ void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
   Frame frame = prepare_frame(mesh_, pass.camera, settings, vertices_.get());
   frame_bytes_ = bytes_of(frame);
   Illustration illustration;
-  if (pass.has_effects) describe(settings, frame, illustration);
+  if (pass.has_effects) describe(settings, context, frame, illustration);
   if (settings.wants_depth) illustration.effects.depth = image.depth.data();
   illustration.effects.record = pass.record;
 

@@ -15,11 +15,41 @@
 
 namespace tetravox {
 
+namespace {
+
+/// Surroundings, filtered for the material that they light.
+struct EnvironmentCache {
+  const Environment* environment = nullptr;
+  double shininess = 0.0;  ///< that `filtered` is for; 0: none
+  optics::FilteredEnvironment filtered = {};
+
+  /// What frames with this lighting need, null where it has no environment.
+  const optics::FilteredEnvironment* prepare(const Lighting& lighting) {
+    if (!lighting.environment) return nullptr;
+    if (!environment)
+      throw Error(ErrorCode::kInvalidArgument,
+                  "the lighting has the environment '" + lighting.environment->file + "': set it before drawing");
+    if (shininess != lighting.material.shininess) {
+      shininess = 0.0;
+      filtered = optics::filter_environment(*environment, lighting.material.shininess);
+      shininess = lighting.material.shininess;
+    }
+    return &filtered;
+  }
+
+  std::uint64_t bytes() const {
+    return (filtered.diffuse.records.size() + filtered.specular.records.size()) * sizeof(float);
+  }
+};
+
+}  // namespace
+
 struct Renderer::State {
   std::unique_ptr<cpu::FrameRenderer> frames;
   bool has_function = false, has_table = false;
   std::vector<const PreparedGrid*> clip_volumes = {};
   std::uint64_t clip_number = 0;
+  EnvironmentCache environment = {};
 };
 
 namespace {
@@ -138,7 +168,8 @@ Image Renderer::render(const Camera& camera, const RenderSettings& settings, Ren
     std::vector<const PreparedGrid*> volumes = state_->clip_volumes;
     volumes.resize(settings.clipping.shapes.size());
     require_clip_volumes(settings.clipping, volumes);
-    frames.render(camera, settings, {kernels, progress, volumes, state_->clip_number}, image, drawn);
+    const optics::FilteredEnvironment* environment = state_->environment.prepare(settings.lighting);
+    frames.render(camera, settings, {kernels, progress, volumes, state_->clip_number, environment}, image, drawn);
   });
   drawn.seconds = timer.seconds();
   drawn.threads = settings.threads > 0 ? settings.threads : support::hardware_threads();
@@ -154,7 +185,12 @@ void Renderer::set_clip_volume(std::size_t shape, const PreparedGrid& grid) {
   ++state_->clip_number;
 }
 
-std::uint64_t Renderer::bytes() const { return state_->frames->bytes(); }
+void Renderer::set_environment(const Environment& environment) {
+  validate_environment(environment);
+  state_->environment = {.environment = &environment};
+}
+
+std::uint64_t Renderer::bytes() const { return state_->frames->bytes() + state_->environment.bytes(); }
 
 Image render(const PreparedMesh& mesh, const OpticalFunction& function, const Camera& camera,
              const RenderSettings& settings) {

@@ -8,6 +8,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 
@@ -106,6 +107,31 @@ std::optional<std::uint32_t> read_word(std::istream& file) {
   return bytes[0] | (std::uint32_t{bytes[1]} << 8) | (std::uint32_t{bytes[2]} << 16) | (std::uint32_t{bytes[3]} << 24);
 }
 
+/// The channels that make colours, in the order red, green, blue.
+std::array<const char*, 3> choose_channels(const std::string& path, const Imf::ChannelList& channels) {
+  if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B")) return {"R", "G", "B"};
+  if (channels.findChannel("Y") && !channels.findChannel("RY")) return {"Y", "Y", "Y"};
+  throw Error(ErrorCode::kUnsupported, "'" + path + "' has neither channels R, G and B nor Y alone");
+}
+
+Pixels read_colors(const std::string& path, std::size_t most) {
+  Imf::InputFile file(path.c_str(), 0);
+  const Imath::Box2i window = file.header().dataWindow();
+  const auto side = [](int min, int max) { return static_cast<long long>(max) - min + 1; };
+  const std::array<const char*, 3> channels = choose_channels(path, file.header().channels());
+  Pixels pixels = make_pixels(path, side(window.min.x, window.max.x), side(window.min.y, window.max.y), most);
+  const std::size_t pixel = 3 * sizeof(float), row = pixel * static_cast<std::size_t>(pixels.width);
+  const bool is_grey = channels[0] == channels[1];
+  Imf::FrameBuffer frame;
+  for (std::size_t c = 0; c < (is_grey ? 1u : 3u); ++c)
+    frame.insert(channels[c], Imf::Slice::Make(Imf::FLOAT, pixels.colors.data() + c, window, pixel, row));
+  file.setFrameBuffer(frame);
+  file.readPixels(window.min.y, window.max.y);
+  for (std::size_t i = 0; is_grey && i < pixels.colors.size(); i += 3)
+    pixels.colors[i + 1] = pixels.colors[i + 2] = pixels.colors[i];
+  return pixels;
+}
+
 }  // namespace
 
 void write_exr(OutputFile& file, const Image& image, const WriteOptions& options, const Progress& progress) {
@@ -114,6 +140,18 @@ void write_exr(OutputFile& file, const Image& image, const WriteOptions& options
 
 void write_depth_exr(OutputFile& file, const Image& image) {
   write_channels(file, image, {{"Z"}, image.depth.data()}, "", {});
+}
+
+Pixels read_exr_pixels(const std::string& path, std::size_t most) {
+  if (!std::ifstream(path, std::ios::binary))
+    throw Error(ErrorCode::kFileNotFound, "cannot open '" + path + "': " + std::strerror(errno));
+  try {
+    return read_colors(path, most);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception&) {
+    throw Error(ErrorCode::kBadFile, "'" + path + "' is not an EXR, or a damaged one");
+  }
 }
 
 std::string read_exr_scene(const std::string& path) {

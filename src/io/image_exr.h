@@ -2,6 +2,7 @@
 
 /// OpenEXR pictures: premultiplied float channels R, G, B, A, the scene in the string attribute "tetravox_scene".
 
+#include "src/io/image_pixels.h"
 #include "src/io/output_file.h"
 
 #include "tetravox/image.h"
@@ -22,5 +23,8 @@ void write_depth_exr(OutputFile& file, const Image& image);
 /// believes no length in the file.
 /// @throws Error: kFileNotFound, kBadFile.
 std::string read_exr_scene(const std::string& path);
+
+/// See `read_pixels`.
+Pixels read_exr_pixels(const std::string& path, std::size_t most);
 
 }  // namespace tetravox::io

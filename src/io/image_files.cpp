@@ -1,5 +1,6 @@
 #include "src/io/image_exr.h"
 #include "src/io/image_npy.h"
+#include "src/io/image_pixels.h"
 #include "src/io/image_png.h"
 #include "src/io/output_file.h"
 
@@ -78,6 +79,27 @@ WriteOptions read_image_options(const std::string& path) {
   WriteOptions options;
   options.scene = io::read_exr_scene(path);
   return options;
+}
+
+io::Pixels io::make_pixels(const std::string& path, long long width, long long height, std::size_t most) {
+  const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
+  if (width < 1 || height < 1) throw Error(ErrorCode::kBadFile, "'" + path + "' says that it has " + size);
+  const auto largest = static_cast<long long>(most);
+  if (width > largest || height > largest / width)
+    throw Error(ErrorCode::kUnsupported,
+                "'" + path + "' has " + size + ": at most " + std::to_string(most) + " are read, so make it smaller");
+  Pixels pixels{static_cast<int>(width), static_cast<int>(height), {}};
+  const std::size_t count = 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  support::require_memory(2 * count * sizeof(float), "the pixels of '" + path + "'");
+  pixels.colors.resize(count);
+  return pixels;
+}
+
+io::Pixels io::read_pixels(const std::string& path, std::size_t most) {
+  const std::string ending = ending_of(path);
+  if (ending == ".png") return read_png_pixels(path, most);
+  if (ending == ".exr") return read_exr_pixels(path, most);
+  throw Error(ErrorCode::kInvalidArgument, "'" + path + "' ends in neither .png nor .exr");
 }
 
 std::string read_image_scene(const std::string& path) { return read_image_options(path).scene; }

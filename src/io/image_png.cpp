@@ -114,6 +114,49 @@ bool run_reader(png_structp png, png_infop info) {
   return true;
 }
 
+/// Asks for RGB of 8 or 16 bits, whatever the file holds, most significant byte first.
+bool ask_for_colors(png_structp png, png_infop info) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_set_expand(png);
+  png_set_gray_to_rgb(png);
+  png_set_strip_alpha(png);
+  png_set_interlace_handling(png);
+  png_read_update_info(png, info);
+  return true;
+}
+
+bool read_rows(png_structp png, std::vector<png_bytep>& rows) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_read_image(png, rows.data());
+  png_read_end(png, nullptr);
+  return true;
+}
+
+/// A PNG that has been read as far as its first pixel.
+class OpenPng {
+ public:
+  explicit OpenPng(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "rbe")) {
+    if (!file_) throw Error(ErrorCode::kFileNotFound, "cannot open '" + path + "': " + std::strerror(errno));
+    png_.reset(png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, leave_on_error, ignore_message));
+    if (png_) png_.get_deleter().info = png_create_info_struct(png());
+    if (!png_ || !info()) throw Error(ErrorCode::kOutOfMemory, "not enough memory to read '" + path + "'");
+    png_set_chunk_malloc_max(png(), kLargestText);
+    png_init_io(png(), file_.get());
+    require(run_reader(png(), info()));
+  }
+
+  png_structp png() const { return png_.get(); }
+  png_infop info() const { return png_.get_deleter().info; }
+  void require(bool is_good) const {
+    if (!is_good) throw Error(ErrorCode::kBadFile, "'" + path_ + "' is not a PNG, or a damaged one");
+  }
+
+ private:
+  std::string path_;
+  std::unique_ptr<std::FILE, FileCloser> file_;
+  std::unique_ptr<png_struct, ReaderDeleter> png_;
+};
+
 }  // namespace
 
 void write_png(OutputFile& file, const Image& image, const WriteOptions& options, const Progress& progress) {
@@ -136,19 +179,9 @@ void write_png(OutputFile& file, const Image& image, const WriteOptions& options
 }
 
 WriteOptions read_png_options(const std::string& path) {
-  std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rbe"));
-  if (!file) throw Error(ErrorCode::kFileNotFound, "cannot open '" + path + "': " + std::strerror(errno));
-  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, leave_on_error, ignore_message);
-  if (!png) throw Error(ErrorCode::kOutOfMemory, "not enough memory to read '" + path + "'");
-  std::unique_ptr<png_struct, ReaderDeleter> owner(png);
-  owner.get_deleter().info = png_create_info_struct(png);
-  png_infop info = owner.get_deleter().info;
-  if (!info) throw Error(ErrorCode::kOutOfMemory, "not enough memory to read '" + path + "'");
-
-  png_set_chunk_malloc_max(png, kLargestText);
-  png_init_io(png, file.get());
-  if (!run_reader(png, info)) throw Error(ErrorCode::kBadFile, "'" + path + "' is not a PNG, or a damaged one");
-
+  const OpenPng opened(path);
+  png_structp png = opened.png();
+  png_infop info = opened.info();
   WriteOptions options;
   options.use_alpha = (png_get_color_type(png, info) & PNG_COLOR_MASK_ALPHA) != 0;
   options.bit_depth = png_get_bit_depth(png, info) == 16 ? 16 : 8;
@@ -160,6 +193,24 @@ WriteOptions read_png_options(const std::string& path) {
     if (std::strcmp(texts[i].key, kSceneKey) == 0 && texts[i].text) options.scene.assign(texts[i].text, length);
   }
   return options;
+}
+
+Pixels read_png_pixels(const std::string& path, std::size_t most) {
+  const OpenPng opened(path);
+  png_structp png = opened.png();
+  Pixels pixels =
+      make_pixels(path, png_get_image_width(png, opened.info()), png_get_image_height(png, opened.info()), most);
+  opened.require(ask_for_colors(png, opened.info()));
+  const bool is_wide = png_get_bit_depth(png, opened.info()) == 16;
+  const std::size_t row_bytes = png_get_rowbytes(png, opened.info());
+  std::vector<png_byte> bytes(row_bytes * static_cast<std::size_t>(pixels.height));
+  std::vector<png_bytep> rows;
+  for (int y = 0; y < pixels.height; ++y) rows.push_back(bytes.data() + row_bytes * static_cast<std::size_t>(y));
+  opened.require(read_rows(png, rows));
+  for (std::size_t i = 0; i < pixels.colors.size(); ++i)
+    pixels.colors[i] = is_wide ? static_cast<float>(256 * bytes[2 * i] + bytes[2 * i + 1]) / 65535.0f
+                               : static_cast<float>(bytes[i]) / 255.0f;
+  return pixels;
 }
 
 }  // namespace tetravox::io

@@ -60,6 +60,27 @@ void read_material(const JsonPlace& place, Material& material) {
   read_number(place, "shininess", material.shininess);
 }
 
+/// The name of a file that the scene draws with.
+std::string read_file_name(const JsonPlace& place) {
+  const std::string file = place.string();
+  if (file.empty() || file.find('\0') != std::string::npos) place.fail("not a file name");
+  return file;
+}
+
+EnvironmentLight read_environment_light(const JsonPlace& place) {
+  place.require_keys({"file", "intensity", "rotation", "up"});
+  EnvironmentLight light;
+  light.file = read_file_name(place.at("file"));
+  read_number(place, "intensity", light.intensity);
+  read_number(place, "rotation", light.rotation);
+  if (const auto up = place.find("up")) up->numbers(light.up.data(), 3);
+  return light;
+}
+
+Json write_environment_light(const EnvironmentLight& light) {
+  return {{"file", light.file}, {"intensity", light.intensity}, {"rotation", light.rotation}, {"up", light.up}};
+}
+
 /// Any number that the seed can be: more than `JsonPlace::integer` takes.
 std::uint64_t read_seed(const JsonPlace& place) {
   if (!place.value().is_number_unsigned()) place.fail("expected a whole number from 0 to 18446744073709551615");
@@ -140,11 +161,12 @@ Json write_clip_shape(const ClipShape& shape) {
 }  // namespace
 
 Lighting read_lighting(const JsonPlace& place) {
-  place.require_keys({"lights", "material", "gradient", "gradient_threshold", "two_sided", "shadows",
+  place.require_keys({"lights", "environment", "material", "gradient", "gradient_threshold", "two_sided", "shadows",
                       "shadow_resolution", "ambient_occlusion", "occlusion_seed"});
   Lighting lighting;
   if (const auto lights = place.find("lights"))
     for (std::size_t i = 0; i < lights->size(); ++i) lighting.lights.push_back(read_light(lights->at(i)));
+  if (const auto environment = place.find("environment")) lighting.environment = read_environment_light(*environment);
   if (const auto material = place.find("material")) read_material(*material, lighting.material);
   if (const auto gradient = place.find("gradient"))
     lighting.gradient = at_place(*gradient, [&] { return gradient_method_from_name(gradient->string()); });
@@ -167,6 +189,7 @@ Json write_lighting(const Lighting& lighting) {
   Json json;
   json["lights"] = Json::array();
   for (const Light& light : lighting.lights) json["lights"].push_back(write_light(light));
+  if (lighting.environment) json["environment"] = write_environment_light(*lighting.environment);
   const Material& material = lighting.material;
   json["material"] = {{"ambient", material.ambient},
                       {"diffuse", material.diffuse},

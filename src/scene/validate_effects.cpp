@@ -46,6 +46,14 @@ void validate(const Light& light, const std::string& name) {
   if (light.kind == LightKind::kPoint) require_place(name + ", position", light.position);
 }
 
+void validate(const EnvironmentLight& light) {
+  if (light.file.empty()) fail("environment, file: expected a name");
+  require_number("environment, intensity", light.intensity, 0.0, HUGE_VAL);
+  if (!std::isfinite(light.intensity)) fail("environment, intensity: expected a finite number");
+  if (!std::isfinite(light.rotation)) fail("environment, rotation: expected a finite number of degrees");
+  require_direction("environment, up", light.up);
+}
+
 void validate(const ClipPlane& plane, const std::string& name) {
   require_place(name + ", origin", plane.origin);
   require_direction(name + ", normal", plane.normal);
@@ -70,6 +78,7 @@ void validate(const ClipVolume& volume, const std::string& name) {
 
 void validate_lighting(const Lighting& lighting) {
   for (std::size_t i = 0; i < lighting.lights.size(); ++i) validate(lighting.lights[i], "light " + std::to_string(i));
+  if (lighting.environment) validate(*lighting.environment);
   const Material& material = lighting.material;
   require_number("material, ambient", material.ambient, 0.0, 1.0);
   require_number("material, diffuse", material.diffuse, 0.0, 1.0);

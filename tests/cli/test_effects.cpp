@@ -35,6 +35,14 @@ const std::vector<std::string> kEverything{"--lights",
                                            "headlight*0.5;directional:1,0,-1:1,0.9,0.8",
                                            "--material",
                                            "0.2,0.6,0.4,16",
+                                           "--environment",
+                                           "builtin:room",
+                                           "--environment-intensity",
+                                           "0.5",
+                                           "--environment-rotation",
+                                           "-30",
+                                           "--environment-up",
+                                           "0,1,0",
                                            "--gradient-threshold",
                                            "1",
                                            "--two-sided",
@@ -64,6 +72,10 @@ TEST_F(Effects, WrongValuesNameTheirOption) {
                                                        {"--lights", "directional"},
                                                        {"--lights", "directional:1,2"},
                                                        {"--lights", "point:1,2,3:1,1,1:2"},
+                                                       {"--environment", ""},
+                                                       {"--environment-intensity", "bright"},
+                                                       {"--environment-rotation", "left"},
+                                                       {"--environment-up", "0,1"},
                                                        {"--material", "0.1,0.2,0.3"},
                                                        {"--material", "0.1,0.2,0.3,x"},
                                                        {"--gradient-threshold", "x"},
@@ -101,6 +113,8 @@ TEST_F(Effects, WrongValuesNameTheirOption) {
     expect_error(run(arguments), 2, {option[0], "--help"});
   }
   expect_error(run({"render", "builtin:sphere", "--material", "2,0,0,1"}), 2, {"material, ambient"});
+  expect_error(run({"render", "builtin:sphere", "--environment", "builtin:sky", "--environment-intensity", "-1"}), 2,
+               {"environment, intensity"});
   expect_error(run({"render", "builtin:sphere", "--crop", "0,1"}), 2, {"--clip-box", "0,1"});
   expect_error(run({"render", "builtin:sphere", "-o", "a.npy", "--output-depth", "a.npy"}), 2, {"a.npy"});
   EXPECT_TRUE(names().empty());
@@ -118,6 +132,9 @@ TEST_F(Effects, SavedScenesAndPicturesAreDrawnAgain) {
   }
   const auto json = scene("s.json");
   EXPECT_EQ(json.at("lighting").at("lights").size(), 2u);
+  EXPECT_EQ(
+      json.at("lighting").at("environment"),
+      nlohmann::json({{"file", "builtin:room"}, {"intensity", 0.5}, {"rotation", -30.0}, {"up", {0.0, 1.0, 0.0}}}));
   EXPECT_EQ(json.at("surfaces").at(0).at("back_color"), nlohmann::json({0, 0, 1}));
   EXPECT_EQ(json.at("surfaces").at(0).at("two_sided"), false);
   EXPECT_EQ(json.at("clipping").at("shapes").size(), 2u);
@@ -130,8 +147,9 @@ TEST_F(Effects, OptionsGoOverTheScene) {
   arguments.insert(arguments.end(), kEverything.begin(), kEverything.end());
   draw("a.npy", arguments);
   draw("b.npy", {"s.json", "--save-scene", "b.json", "--lights", "none", "--isosurface", "none", "--crop", "none",
-                 "--opacity-weight", "none", "--shadows", "none"});
+                 "--opacity-weight", "none", "--shadows", "none", "--environment", "none"});
   const auto bare = scene("b.json");
+  EXPECT_FALSE(bare.at("lighting").contains("environment"));
   EXPECT_TRUE(bare.at("lighting").at("lights").empty());
   EXPECT_FALSE(bare.contains("surfaces"));
   EXPECT_FALSE(bare.contains("clipping"));
@@ -149,6 +167,35 @@ TEST_F(Effects, WithoutThemScenesAreAsTheyWere) {
   for (const char* key : {"lighting", "surfaces", "clipping"}) EXPECT_FALSE(scene("s.json").contains(key)) << key;
   draw("a.npy", {"builtin:sphere", "--save-scene", "s.json", "--isosurface", "0.5"});
   EXPECT_EQ(scene("s.json").at("lighting").at("lights").at(0).at("kind"), "headlight");
+}
+
+TEST_F(Effects, SurroundingsAreLightEnough) {
+  const auto light_count = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"builtin:sphere", "--save-scene", "s.json"});
+    draw("a.npy", arguments);
+    return scene("s.json").at("lighting").at("lights").size();
+  };
+  EXPECT_EQ(light_count({"--environment", "builtin:studio"}), 0u);
+  EXPECT_EQ(light_count({"--environment", "builtin:studio", "--isosurface", "0.5", "--two-sided", "off"}), 0u);
+  EXPECT_EQ(light_count({"--environment", "builtin:studio", "--shade"}), 1u);
+  EXPECT_EQ(light_count({"--environment", "none", "--isosurface", "0.5"}), 1u);
+}
+
+TEST_F(Effects, SurroundingsMoveWithTheirFolder) {
+  std::filesystem::create_directories(path("project/sky"));
+  // Pictures of our own serve as faces.
+  for (const std::string face : {"px", "nx", "py", "ny", "pz", "nz"})
+    draw("project/sky/" + face + ".exr", {"builtin:sphere"});
+  const std::string first = draw("project/a.png", {"builtin:sphere", "--environment", "project/sky", "--save-scene",
+                                                   "project/s.json", "--isosurface", "0.5"});
+  EXPECT_EQ(scene("project/s.json").at("lighting").at("environment").at("file"), "sky");
+  EXPECT_NE(draw("project/c.png", {"project/s.json", "--environment-rotation", "120"}), first);
+  std::filesystem::rename(path("project"), path("moved"));
+  for (const std::string input : {"moved/s.json", "moved/a.png"}) EXPECT_EQ(draw("moved/b.png", {input}), first);
+  EXPECT_NE(draw("moved/b.png", {"moved/s.json", "--environment", "builtin:sky"}), first);
+  expect_error(run({"render", "builtin:sphere", "--environment", "gone.exr"}), 1, {"gone.exr", "cannot open"});
+  expect_error(run({"render", "builtin:sphere", "--environment", "moved/a.png"}), 1, {"moved/a.png", "twice as wide"});
+  expect_error(run({"render", "builtin:sphere", "--environment", "builtin:moon"}), 1, {"moon", "studio"});
 }
 
 TEST_F(Effects, ClipVolumesMoveWithTheirFolder) {
@@ -199,6 +246,8 @@ TEST_F(Effects, WhatChangesNothingIsSaid) {
     return result.err;
   };
   EXPECT_NE(warning({"--one-sided"}).find("--isosurface"), std::string::npos);
+  EXPECT_NE(warning({"--environment-rotation", "3"}).find("--environment"), std::string::npos);
+  EXPECT_NE(warning({"--environment", "builtin:sky", "--shadows", "volume"}).find("--shadows"), std::string::npos);
   EXPECT_NE(warning({"--clip-combine", "union"}).find("--clip-combine"), std::string::npos);
   EXPECT_NE(warning({"--opacity-weight-scale", "2"}).find("--opacity-weight-scale"), std::string::npos);
   EXPECT_NE(warning({"--clip-box", "100,101,100,101,100,101"}).find("clipping keeps nothing"), std::string::npos);
@@ -209,6 +258,7 @@ TEST_F(Effects, EachChangesThePicture) {
                                                      {"--lights", "directional:1,0,0:1,0.5,0.5*2;point:3,0,0"},
                                                      {"--shade", "--shadows", "volume", "--shadow-resolution", "16"},
                                                      {"--ambient-occlusion", "3", "--shadow-resolution", "16"},
+                                                     {"--environment", "builtin:sky"},
                                                      {"--isosurface", "0.5"},
                                                      {"--isosurface", "0.5:1,0,0:0.5", "--isosurface", "0.8"},
                                                      {"--clip-plane", "0,0,0,1,0,0"},

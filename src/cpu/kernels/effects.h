@@ -42,9 +42,24 @@ struct OcclusionMap {
   const float* visibility = nullptr;  ///< [z][y][x][4]: first moments along the world's axes, mean
 };
 
+/// Colours over directions at the nodes of a cube (see DirectionTable in optics/environment_filter.h).
+struct DirectionMap {
+  std::int32_t size = 0;          ///< nodes a side
+  const float* colors = nullptr;  ///< [6][size][size][4]
+};
+
+/// Light of the surroundings, filtered.
+struct EnvironmentMaps {
+  float map_from_camera[9] = {};   ///< of directions
+  DirectionMap diffuse, specular;  ///< by normal; by reflected view
+  float mean[3] = {};              ///< over all directions
+  float intensity = 1.0f;          ///< of all of these
+};
+
 struct Shading {
   std::span<const LightSource> lights;
   const OcclusionMap* occlusion = nullptr;
+  const EnvironmentMaps* environment = nullptr;
   float ambient = 0.0f, diffuse = 1.0f, specular = 0.0f, shininess = 1.0f;
   float half_strength = 0.0f;  ///< square of the gradient magnitude at which shading has half its strength
   bool is_two_sided = true;

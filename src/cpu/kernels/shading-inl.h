@@ -8,42 +8,13 @@
 #endif
 
 #include "src/cpu/kernels/effects.h"
+#include "src/cpu/kernels/environment-inl.h"
+#include "src/cpu/kernels/triples-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
-
-/// Three components of a vector of rays, one each.
-struct Triple {
-  Float x, y, z;
-};
-
-HWY_INLINE Float dot(const Triple& a, const Triple& b) {
-  return multiply_add(a.z, b.z, multiply_add(a.y, b.y, hn::Mul(a.x, b.x)));
-}
-HWY_INLINE Triple scaled(const Triple& a, Float by) { return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)}; }
-HWY_INLINE Triple sum_of(const Triple& a, const Triple& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE Triple constant_triple(const float v[3]) { return {constant(v[0]), constant(v[1]), constant(v[2])}; }
-HWY_INLINE Triple normalized(const Triple& a) {
-  return scaled(a, hn::Div(constant(1.0f), hn::Sqrt(hn::Max(dot(a, a), constant(1e-30f)))));
-}
-/// Rows of a matrix with `columns` columns (3, or 4 for an affine map) times a vector.
-HWY_INLINE Triple transform(const float* m, int columns, const Triple& a) {
-  const auto row = [&](int i) {
-    const float* r = m + columns * i;
-    const Float sum =
-        multiply_add(constant(r[2]), a.z, multiply_add(constant(r[1]), a.y, hn::Mul(constant(r[0]), a.x)));
-    return columns == 4 ? hn::Add(sum, constant(r[3])) : sum;
-  };
-  return {row(0), row(1), row(2)};
-}
-HWY_INLINE Triple mix(Float t, const Triple& a, const Triple& b) {
-  return {multiply_add(t, hn::Sub(b.x, a.x), a.x), multiply_add(t, hn::Sub(b.y, a.y), a.y),
-          multiply_add(t, hn::Sub(b.z, a.z), a.z)};
-}
 
 /// log2(x) for normal x > 0, to 3e-7: exponent, and the series of atanh for a mantissa in [sqrt(1/2), sqrt(2)).
 HWY_INLINE Float log2_positive(Float x) {
@@ -64,28 +35,6 @@ HWY_INLINE Float power(Float x, float exponent) {
   const Float log = log2_positive(hn::Max(x, constant(1e-20f)));
   return exp_negative(hn::Mul(hn::Min(log, constant(0.0f)), constant(-0.69314718f * exponent)));
 }
-
-/// Where a vector of places lies in a lattice, clamped to it.
-struct LatticePlace {
-  Int node;     ///< number of the lower corner
-  Int step[3];  ///< from corner to corner; 0 along an axis with one point
-  Float t[3];   ///< place between the corners
-
-  HWY_INLINE LatticePlace(const std::int32_t sizes[3], const Triple& place) {
-    const Float at[3] = {place.x, place.y, place.z};
-    node = hn::Zero(kInt);
-    std::int32_t stride = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float last = static_cast<float>(sizes[axis] - 1);
-      const Float inside = hn::Min(hn::Max(at[axis], constant(0.0f)), constant(last));
-      const Int index = hn::Min(hn::ConvertTo(kInt, inside), hn::Set(kInt, sizes[axis] > 1 ? sizes[axis] - 2 : 0));
-      t[axis] = hn::Sub(inside, hn::ConvertTo(kFloat, index));
-      node = hn::Add(node, hn::Mul(index, hn::Set(kInt, stride)));
-      step[axis] = hn::Set(kInt, sizes[axis] > 1 ? stride : 0);
-      stride *= sizes[axis];
-    }
-  }
-};
 
 /// What comes through from a light: optical depth linear along the light, transmittance linear across it, so that both
 /// a homogeneous medium and the edge of a shadow are smooth (percentage closer filtering; Reeves, Salesin, Cook 1987).
@@ -172,7 +121,7 @@ HWY_INLINE Float find_openness(const OcclusionMap& map, const Triple& position, 
 /// Whether the light comes from the eye alone, so that `illuminate_from_eye` serves.
 inline bool is_lit_from_eye(const Shading& shading) {
   return shading.lights.size() == 1 && shading.lights[0].kind == LightSource::Kind::kHeadlight &&
-         shading.is_two_sided && !shading.occlusion && shading.lights[0].shadows.empty();
+         shading.is_two_sided && !shading.occlusion && !shading.environment && shading.lights[0].shadows.empty();
 }
 
 /// `illuminate` for that: normal, view and light meet in one cosine, and nothing need be normalised.
@@ -230,6 +179,13 @@ HWY_NOINLINE inline Illumination illuminate(const Shading& shading, const Shaded
     const Triple color = scaled(constant_triple(source.color), reaching);
     light.diffuse = sum_of(light.diffuse, scaled(color, hn::Mul(constant(shading.diffuse), diffuse)));
     light.specular = sum_of(light.specular, scaled(color, specular));
+  }
+  if (shading.environment) {
+    const Surroundings around = find_surroundings(*shading.environment, normal, place.to_eye, strength);
+    Float specular = constant(shading.specular);
+    if (!shading.is_two_sided) specular = hn::IfThenZeroElse(turned, specular);  // what is seen mirrors nothing
+    light.diffuse = sum_of(light.diffuse, scaled(around.diffuse, hn::Mul(constant(shading.diffuse), openness)));
+    light.specular = sum_of(light.specular, scaled(around.specular, specular));
   }
   return light;
 }

@@ -60,6 +60,7 @@ Lighting random_lighting(Dice& dice) {
     light.intensity = dice.above_zero();
     lighting.lights.push_back(light);
   }
+  if (dice.coin()) lighting.environment = {"sky/*.exr", dice.above_zero(), dice.number(), dice.vector()};
   lighting.material = {dice.unit(), dice.unit(), dice.unit(), 1.0 + 999.0 * dice.unit()};
   lighting.gradient = static_cast<GradientMethod>(dice.below(5));
   lighting.gradient_threshold = 100.0 * dice.unit();
@@ -119,6 +120,13 @@ void expect_same(const Lighting& a, const Lighting& b) {
     }
     EXPECT_EQ(one.color, other.color);
     EXPECT_EQ(one.intensity, other.intensity);
+  }
+  ASSERT_EQ(a.environment.has_value(), b.environment.has_value());
+  if (a.environment) {
+    EXPECT_EQ(a.environment->file, b.environment->file);
+    EXPECT_EQ(a.environment->intensity, b.environment->intensity);
+    EXPECT_EQ(a.environment->rotation, b.environment->rotation);
+    EXPECT_EQ(a.environment->up, b.environment->up);
   }
   EXPECT_EQ(a.material.ambient, b.material.ambient);
   EXPECT_EQ(a.material.diffuse, b.material.diffuse);
@@ -245,6 +253,11 @@ TEST(EffectRoundTrip, SayWhatIsWrongAboutLighting) {
   expect_bad_lighting(R"("lights":[{"kind":"point"}])", "lighting.lights[0]", "'position'");
   expect_bad_lighting(R"("lights":[{"kind":"headlight","color":[0,0,2]}])", "light 0, color", "[0, 1]");
   expect_bad_lighting(R"("lights":[{"kind":"headlight","intensity":-1}])", "light 0, intensity", "from 0 up");
+  expect_bad_lighting(R"("environment":{})", "lighting.environment", "'file'");
+  expect_bad_lighting(R"("environment":{"file":""})", "lighting.environment.file", "file name");
+  expect_bad_lighting(R"("environment":{"file":"a.exr","turn":1})", "lighting.environment", "'turn'");
+  expect_bad_lighting(R"("environment":{"file":"a.exr","intensity":-1})", "environment, intensity", "from 0 up");
+  expect_bad_lighting(R"("environment":{"file":"a.exr","up":[0,0,0]})", "environment, up", "not all 0");
   expect_bad_lighting(R"("material":{"shiny":1})", "lighting.material", "'shiny'");
   expect_bad_lighting(R"("material":{"ambient":2})", "material, ambient", "from 0 to 1");
   expect_bad_lighting(R"("gradient":"sobel")", "lighting.gradient", "central");

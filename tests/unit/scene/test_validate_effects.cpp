@@ -38,6 +38,14 @@ TEST(Validation, LightingNamesTheMember) {
         l.lights[1] = {.kind = LightKind::kPoint, .position = {0, NAN, 0}};
       },
       "light 1, position");
+  const auto expect_bad_environment = [](const EnvironmentLight& light, const char* member) {
+    expect_bad_lighting([&](Lighting& l) { l.environment = light; }, member);
+  };
+  expect_bad_environment({""}, "environment, file");
+  expect_bad_environment({"a.exr", -1.0}, "environment, intensity");
+  expect_bad_environment({"a.exr", INFINITY}, "environment, intensity");
+  expect_bad_environment({"a.exr", 1.0, NAN}, "environment, rotation");
+  expect_bad_environment({"a.exr", 1.0, 0.0, {0, 0, 0}}, "environment, up");
   expect_bad_lighting([](Lighting& l) { l.material.ambient = -0.1; }, "material, ambient");
   expect_bad_lighting([](Lighting& l) { l.material.diffuse = 1.1; }, "material, diffuse");
   expect_bad_lighting([](Lighting& l) { l.material.specular = NAN; }, "material, specular");
