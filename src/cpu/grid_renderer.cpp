@@ -4,9 +4,12 @@
 #include "src/cpu/filtered_field.h"
 #include "src/cpu/frame_renderer.h"
 #include "src/cpu/grid_frame.h"
+#include "src/cpu/grid_shadows.h"
 #include "src/cpu/illustration.h"
+#include "src/cpu/planned_brick.h"
 #include "src/grid/summaries.h"
 #include "src/optics/antiderivative_table.h"
+#include "src/optics/extinction_integral.h"
 #include "src/optics/steepness_table.h"
 #include "src/optics/transparency_table.h"
 #include "src/support/threads.h"
@@ -143,8 +146,7 @@ struct FrameParts {
   GridView view;
   Rays rays;
   BrickBins bins;
-  LatticeField field;
-  PlanSources sources;
+  PlannedGrid grid;
   Marches marches;
   const Kernels* kernels = nullptr;
   MarchJob job;
@@ -179,6 +181,7 @@ class GridRenderer final : public FrameRenderer {
   void set_transfer_function(const OpticalFunction& function) override {
     const ValueRange& range = grid_.scalar_range;
     control_points_ = optics::build_control_point_table(function, scalar_map());
+    extinction_ = optics::ExtinctionIntegral(function, scalar_map());
     optics::build_antiderivative_table(function, scalar_map(), range, diagonal(), antiderivative_);
     optics::build_steepness_table(control_points_, scalar_map().stored_from_value(range.min),
                                   scalar_map().stored_from_value(range.max), steepness_);
@@ -195,7 +198,7 @@ class GridRenderer final : public FrameRenderer {
   }
 
   std::uint64_t bytes() const override {
-    return antiderivative_.bytes() + control_points_.bytes() + plans_.size() * sizeof(BrickPlan) +
+    return antiderivative_.bytes() + control_points_.bytes() + extinction_.bytes() + plans_.size() * sizeof(BrickPlan) +
            (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_ +
            centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes();
   }
@@ -213,12 +216,14 @@ class GridRenderer final : public FrameRenderer {
   void prepare_filter(const RenderSettings& settings);
   GradientSource choose_gradients(const RenderSettings& settings) const;
   void describe(const RenderSettings& settings, FrameParts& frame);
+  void trace(const RenderSettings& settings, const FrameContext& context, FrameParts& frame) const;
   ShadowedBody shadowed_body() const;
   void prepare_shadows(const Camera& camera, const RenderSettings& settings, const FrameContext& context);
   struct Pass;
   void draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics);
   LatticeField lattice_field(const RenderSettings& settings, const Kernels& kernels) const;
   PlanSources plan_sources(const RenderSettings& settings) const;
+  PlanSettings plan_settings(const RenderSettings& settings) const;
   void plan(const RenderSettings& settings);
   MarchJob make_job(const RenderSettings& settings, const IntegratorTables& tables) const;
   std::uint64_t draw_brick(const FrameParts& frame, const TilePlace& place, const BinnedBrick& binned,
@@ -231,6 +236,7 @@ class GridRenderer final : public FrameRenderer {
   FilteredField field_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
+  optics::ExtinctionIntegral extinction_;
   optics::SteepnessTable steepness_;
   bool has_centroids_ = false;
   optics::CentroidTable centroids_;  // made at the first frame with light
@@ -294,6 +300,25 @@ void GridRenderer::describe(const RenderSettings& settings, FrameParts& frame) {
   shadows_.attach(settings, shadowed_body(), frame.view.camera, frame.illustration);
 }
 
+/// Shadows by rays.
+void GridRenderer::trace(const RenderSettings& settings, const FrameContext& context, FrameParts& frame) const {
+  Illustration& illustration = frame.illustration;
+  if (settings.lighting.shadows != ShadowKind::kExact || illustration.lights.empty()) return;
+  // Where nobody asks for gradients, larger cells will do.
+  PlanSettings plan = plan_settings(settings);
+  plan.wants_gradients = settings.opacity_weight == OpacityWeight::kGradient;
+  illustration.shadow_plans = plan_bricks(frame.grid.sources, plan);
+  PlannedGrid grid = frame.grid;
+  grid.plans = illustration.shadow_plans;
+  if (!plan.wants_gradients) grid.field.gradients = GradientSource::kNone;
+  GridShadowSettings exactness{frame.job.allowed_rate, frame.job.most_pieces, {}};
+  std::copy_n(illustration.effects.camera_from_gradient, 9, exactness.camera_from_gradient.begin());
+  const LocalFrame local{frame.view.origin, frame.view.world_per_local};
+  illustration.medium =
+      std::make_unique<GridShadows>(grid, local, make_shadow_optics(settings, extinction_, illustration), exactness);
+  trace_shadows(settings, {frame.view.camera, local.origin, local.world_per_local}, context, illustration);
+}
+
 ShadowedBody GridRenderer::shadowed_body() const {
   const LocalFrame local = find_local_frame(drawn());
   return {drawn().bounds, local.origin, local.world_per_local};
@@ -311,13 +336,18 @@ PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
   return {&drawn(), &field_, &steepness_, 1.0f / antiderivative_.nodes_per_scalar, diagonal(), is_constant(settings)};
 }
 
-void GridRenderer::plan(const RenderSettings& settings) {
+PlanSettings GridRenderer::plan_settings(const RenderSettings& settings) const {
   PlanSettings wanted{settings.filter,           settings.integrator,
                       settings.tolerance,        settings.samples_per_voxel,
                       wants_gradients(settings), {}};
   for (const Isosurface& surface : settings.surfaces)
     wanted.surface_values.push_back(scalar_map().stored_from_value(surface.value));
   std::sort(wanted.surface_values.begin(), wanted.surface_values.end());
+  return wanted;
+}
+
+void GridRenderer::plan(const RenderSettings& settings) {
+  const PlanSettings wanted = plan_settings(settings);
   if (is_planned_ && wanted == planned_for_) return;
   plans_ = plan_bricks(plan_sources(settings), wanted);
   visible_.clear();
@@ -362,11 +392,7 @@ std::uint64_t GridRenderer::draw_brick(const FrameParts& frame, const TilePlace&
     const int count = frame.kernels->clip_brick(job);
     if (count == 0) continue;
     if (!is_filled) {
-      const ValueRange range = range_of(frame.sources, binned.brick);
-      brick.steepness = steepness_.largest_steepness(static_cast<float>(range.min), static_cast<float>(range.max));
-      brick.has_missing |= field_.kernel && drawn().missing_values > 0;  // a kernel reaches into other bricks
-      workspace.lattice.fill(frame.field, brick);
-      if (!plan.is_curved) brick.steepness = 0.0f;
+      fill_planned(frame.grid, binned.brick, workspace.lattice, brick);
       is_filled = true;
     }
     segments += march(job, count);
@@ -388,7 +414,7 @@ TileCounts GridRenderer::draw_tile(const FrameParts& frame, std::size_t tile, Wo
   frame.kernels->start_march(start);
   if (frame.has_clipping) workspace.intervals.find(frame.clip, frame.rays.grid, column, row, *workspace.rays);
   for (std::size_t i = 0; i < bricks.size(); ++i) {
-    if (i + 1 < bricks.size()) BrickLattice::prefetch(frame.field, drawn(), bricks[i + 1].brick);
+    if (i + 1 < bricks.size()) BrickLattice::prefetch(frame.grid.field, drawn(), bricks[i + 1].brick);
     counts.segments += draw_brick(frame, {column, row}, bricks[i], workspace);
   }
   const MarchRays& rays = *workspace.rays;
@@ -458,14 +484,14 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
   frame.view = make_grid_view(drawn(), frame_, pass.camera, settings.width, settings.height);
   frame.rays = make_rays(frame.view.camera, frame.view.world_per_local);
   frame.bins = bin_bricks(drawn(), frame_, visible_, frame.view);
-  frame.field = lattice_field(settings, kernels);
-  frame.sources = plan_sources(settings);
+  frame.grid = {&frame_, lattice_field(settings, kernels), plan_sources(settings), plans_};
   frame.marches = has_effects ? choose_illustrated_marches(kernels, is_constant(settings), settings.integrator)
                               : choose_marches(kernels, is_constant(settings), settings);
   frame.kernels = &kernels;
   frame.job = make_job(settings, tables);
   frame.job.grid = &frame.rays.grid;
   if (has_effects) describe(settings, frame);
+  if (has_effects) trace(settings, context, frame);
   frame.illustration.effects.record = pass.record;
   if (settings.wants_depth) frame.illustration.effects.depth = image.depth.data();
   frame.has_clipping = !settings.clipping.shapes.empty();
@@ -487,6 +513,7 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
       tile_progress.tile_done();
     }
   });
+  support::throw_if_cancelled(progress);  // the last tile may have been given up
   if (settings.wants_depth) measure_depth(frame.view.camera, frame.view.world_per_local, image);
   statistics.segments = segments;
   statistics.rays = met_rays;
@@ -514,7 +541,13 @@ std::uint64_t estimate_render_memory(const GridData& grid, const RenderSettings&
   const std::uint64_t coefficients = settings.filter.kind == FilterKind::kInterpolatingBspline
                                          ? 2 * (values[0] + 4) * (values[1] + 4) * (values[2] + 4) * sizeof(float)
                                          : 0;
-  return pixels * 4 * sizeof(float) + bricks * of_brick + coefficients + kTables;
+  std::uint64_t shadows = 0;
+  if (settings.lighting.shadows == ShadowKind::kExact && settings.lighting.is_lit()) {
+    const auto threads =
+        static_cast<std::uint64_t>(settings.threads > 0 ? settings.threads : support::hardware_threads());
+    shadows = threads * std::min<std::uint64_t>(bricks * cpu::BrickStore::kBytesOfBrick, cpu::BrickStore::kMostBytes);
+  }
+  return pixels * 4 * sizeof(float) + bricks * of_brick + coefficients + shadows + kTables;
 }
 
 }  // namespace tetravox

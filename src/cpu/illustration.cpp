@@ -20,6 +20,12 @@ constexpr float kUsualLight = 0.75f;
 /// Of the shadows' lattice: by how many steps surfaces are moved off themselves, and how many are lit as their middle.
 constexpr float kBiasInSteps = 1.5f, kLitInSteps = 1.5f;
 
+/// Of exact shadows: by what local length surfaces are moved off themselves; what opacity may be lit as its middle is,
+/// at the default tolerance and at most (half of that is what the end of a sharp shadow may be off, its square what a
+/// bend of the light may); and how much less than the tolerance need not come through.
+constexpr float kRayBias = 1e-4f;
+constexpr double kLitAlike = 0.02, kUsualTolerance = 2e-3, kDarkOfTolerance = 1e-2;
+
 LightSource make_light(const Light& light, const IllustratedFrame& frame) {
   LightSource source;
   for (int channel = 0; channel < 3; ++channel)
@@ -120,7 +126,7 @@ void ShadowCache::attach(const RenderSettings& settings, const ShadowedBody& bod
   Shading& shading = illustration.shading;
   const float step = find_shadow_step(settings, body);
   shading.shadow_bias = kBiasInSteps * step;
-  if (settings.lighting.shadows != ShadowKind::kNone || settings.lighting.ambient_occlusion > 0)
+  if (settings.lighting.shadows == ShadowKind::kVolume || settings.lighting.ambient_occlusion > 0)
     illustration.effects.longest_lit = kLitInSteps * step;
   if (settings.lighting.shadows == ShadowKind::kVolume) {
     for (const std::vector<LightDepths>& light : lights_) {
@@ -134,6 +140,23 @@ void ShadowCache::attach(const RenderSettings& settings, const ShadowedBody& bod
     illustration.occlusion = make_occlusion_map(openness_, body, camera);
     shading.occlusion = &illustration.occlusion;
   }
+}
+
+ShadowOptics make_shadow_optics(const RenderSettings& settings, const optics::ExtinctionIntegral& extinction,
+                                const Illustration& illustration) {
+  const Effects& effects = illustration.effects;
+  return {&extinction, effects.surfaces, effects.weight_by_change, effects.weight_by_gradient,
+          -std::log(kDarkOfTolerance * settings.tolerance)};
+}
+
+void trace_shadows(const RenderSettings& settings, const ShadowFrame& frame, const FrameContext& context,
+                   Illustration& illustration) {
+  illustration.rays =
+      std::make_unique<ShadowRays>(frame, *illustration.medium, settings.clipping, context.clip_volumes);
+  illustration.rays->attach(settings.lighting.lights, illustration.lights, context.progress.cancelled);
+  illustration.shading.ray_bias = kRayBias;
+  const double fineness = std::sqrt(std::min(1.0, settings.tolerance / kUsualTolerance));
+  illustration.effects.largest_lit = static_cast<float>(kLitAlike * fineness);
 }
 
 Vector3 to_camera(const CameraFrame& camera, const Vector3& direction) {

@@ -47,9 +47,10 @@ constexpr std::array<Name<LightKind>, 3> kLightKinds{{{LightKind::kHeadlight, "h
                                                       {LightKind::kDirectional, "directional", "parallel rays"},
                                                       {LightKind::kPoint, "point", "shines from a place"}}};
 
-constexpr std::array<Name<ShadowKind>, 2> kShadowKinds{
+constexpr std::array<Name<ShadowKind>, 3> kShadowKinds{
     {{ShadowKind::kNone, "none", "light reaches everything"},
-     {ShadowKind::kVolume, "volume", "optical depth towards each light, on a lattice that it sees"}}};
+     {ShadowKind::kVolume, "volume", "optical depth towards each light, on a lattice that it sees"},
+     {ShadowKind::kExact, "exact", "a ray from each light to each place that is lit: sharp, slow, for stills"}}};
 
 template <class Names>
 auto enumerator_from_name(const Names& names, std::string_view name, std::string_view what) {

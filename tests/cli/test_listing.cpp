@@ -34,7 +34,7 @@ TEST_F(Listing, Topics) {
   expect_text({"list", "builtins"}, {"builtin:sphere", "builtin:buckyball", "builtin:duct"});
   expect_text({"list", "methods"},
               {"walk", "antiderivative", "partial", "post", "Gradients (--gradient)", "central", "Shadows (--shadows)",
-               "Opacity weights (--opacity-weight)", "scalar-difference", "Instruction sets"});
+               "exact", "Opacity weights (--opacity-weight)", "scalar-difference", "Instruction sets"});
 }
 
 TEST_F(Listing, InfoOfAFile) {

@@ -30,8 +30,8 @@ class EffectIntegrator {
   explicit EffectIntegrator(const IntegratorTables& tables)
       : base_(tables),
         effects_(*tables.effects),
-        is_light_all_(effects_.shading && effects_.longest_lit == 0.0f && !is_weighted() && !effects_.depth &&
-                      !effects_.record),
+        is_light_cut_(effects_.longest_lit > 0.0f || effects_.largest_lit > 0.0f),
+        is_light_all_(effects_.shading && !is_light_cut_ && !is_weighted() && !effects_.depth && !effects_.record),
         is_lit_from_eye_(effects_.shading && is_lit_from_eye(*effects_.shading)) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return base_.front_at(scalar); }
@@ -52,7 +52,7 @@ class EffectIntegrator {
     const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
     const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
     if (hn::AllFalse(kFloat, bright)) {
-      add_usual(part, sum);
+      add_in_light(part, effects_.usual_light, sum);  // too faint for a normal
       return;
     }
     const auto stretch = make_stretch();
@@ -191,7 +191,7 @@ class EffectIntegrator {
   HWY_INLINE void integrate_volume(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
     if (!effects_.shading)
       integrate_pieces(walk, begin, end, walk.sum, nullptr);
-    else if (effects_.longest_lit > 0.0f)
+    else if (is_light_cut_)
       integrate_lit_parts(walk, begin, end);
     else
       integrate_lit(walk, begin, end);
@@ -202,10 +202,11 @@ class EffectIntegrator {
   HWY_NOINLINE void integrate_lit_parts(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
     constexpr float kMostParts = 256.0f;
     const Float one = constant(1.0f), span = hn::Sub(end.u, begin.u);
-    const Triple direction = walk.ray.direction();
-    const Float depth = hn::Sub(depth_at(walk.stretch, end.u), depth_at(walk.stretch, begin.u));
-    const Float length = hn::Mul(depth, hn::Sqrt(dot(direction, direction)));
-    const Float wanted = hn::Ceil(hn::Mul(length, constant(1.0f / effects_.longest_lit)));
+    Float wanted = one;
+    if (effects_.longest_lit > 0.0f) wanted = count_by_length(walk.stretch, walk.ray, begin, end, effects_.longest_lit);
+    if (effects_.largest_lit > 0.0f)
+      wanted =
+          hn::Max(wanted, count_by_opacity(walk.sum.transmittance, pass_unlit(walk, begin, end), effects_.largest_lit));
     const Float parts = hn::IfThenElse(hn::Gt(walk.stretch.length, constant(0.0f)),
                                        hn::Min(hn::Max(wanted, one), constant(kMostParts)), one);
     Cut at = begin;
@@ -217,6 +218,19 @@ class EffectIntegrator {
       if (hn::AllTrue(kFloat, last)) return;
       at = next;
     }
+  }
+
+  /// What comes through from `begin` to `end`.
+  template <class Stretch>
+  HWY_INLINE Float pass_unlit(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
+    const Float zero = constant(0.0f);
+    Accumulated part{zero, zero, zero, walk.sum.transmittance};
+    const Front front = walk.front;
+    const Float depth = walk.depth;
+    integrate_pieces(walk, begin, end, part, nullptr);
+    walk.front = front;
+    walk.depth = depth;
+    return part.transmittance;
   }
 
   /// Where pieces absorb.
@@ -320,9 +334,7 @@ class EffectIntegrator {
     const Mask open = hn::Eq(walk.depth, constant(std::numeric_limits<float>::infinity()));
     const Mask passes = hn::And(open, hn::And(hn::Ge(before, half), hn::Lt(after, half)));
     if (HWY_LIKELY(hn::AllFalse(kFloat, passes))) return;
-    const auto log = [](Float x) { return log2_positive(hn::Max(x, constant(1e-30f))); };
-    const Float span = hn::Max(hn::Sub(log(before), log(after)), constant(1e-12f));
-    const Float t = hn::Min(hn::Div(hn::Add(log(before), constant(1.0f)), span), constant(1.0f));
+    const Float t = find_half(before, after);
     const Float u = multiply_add(t, hn::Sub(b.u, a.u), a.u);
     walk.depth = hn::IfThenElse(passes, depth_at(walk.stretch, u), walk.depth);
   }
@@ -347,21 +359,12 @@ class EffectIntegrator {
     const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
     const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
     if (hn::AllFalse(kFloat, bright)) {
-      add_usual(part, sum);
+      add_in_light(part, effects_.usual_light, sum);  // too faint for a normal
       return;
     }
     const Float mean = hn::Div(emission.moment, hn::Max(absorbed, constant(1e-30f)));
     const Float u = hn::IfThenElse(emission.is_single, emission.place, mean);
     add_lit(walk.stretch, walk.ray, hn::Min(hn::Max(u, begin.u), end.u), bright, part, sum);
-  }
-
-  /// Adds what is too faint for a normal.
-  HWY_INLINE void add_usual(const Accumulated& part, Accumulated& sum) const {
-    const Float usual = constant(effects_.usual_light);
-    sum.red = multiply_add(part.red, usual, sum.red);
-    sum.green = multiply_add(part.green, usual, sum.green);
-    sum.blue = multiply_add(part.blue, usual, sum.blue);
-    sum.transmittance = part.transmittance;
   }
 
   /// Adds a part of a stretch in the light at `u`, where that is `bright`.
@@ -385,7 +388,7 @@ class EffectIntegrator {
 
   Base base_;
   const Effects& effects_;
-  bool is_light_all_, is_lit_from_eye_;
+  bool is_light_cut_, is_light_all_, is_lit_from_eye_;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -58,6 +58,39 @@ HWY_INLINE Float depth_at(const Stretch& stretch, Float u) {
   return multiply_add(u, hn::Sub(stretch.z_back, stretch.z_front), stretch.z_front);
 }
 
+/// Adds a part of a ray, emission times `light`.
+HWY_INLINE void add_in_light(const Accumulated& part, float light, Accumulated& sum) {
+  sum.red = multiply_add(part.red, constant(light), sum.red);
+  sum.green = multiply_add(part.green, constant(light), sum.green);
+  sum.blue = multiply_add(part.blue, constant(light), sum.blue);
+  sum.transmittance = part.transmittance;
+}
+
+/// Where transmittance passes one half, from 0 where it is `before` to 1 where it is `after`.
+HWY_INLINE Float find_half(Float before, Float after) {
+  const auto log = [](Float x) { return log2_positive(hn::Max(x, constant(1e-30f))); };
+  const Float span = hn::Max(hn::Sub(log(before), log(after)), constant(1e-12f));
+  return hn::Min(hn::Div(hn::Add(log(before), constant(1.0f)), span), constant(1.0f));
+}
+
+/// Parts of a stretch that are no longer than `longest`, local length.
+template <class Stretch>
+HWY_INLINE Float count_by_length(const Stretch& stretch, const RayView& ray, const Cut& begin, const Cut& end,
+                                 float longest) {
+  const Triple direction = ray.direction();
+  const Float depth = hn::Sub(depth_at(stretch, end.u), depth_at(stretch, begin.u));
+  const Float length = hn::Mul(depth, hn::Sqrt(dot(direction, direction)));
+  return hn::Ceil(hn::Mul(length, constant(1.0f / longest)));
+}
+
+/// Parts of equal length of which the first, where the ray is brightest, absorbs no more than `largest`; transmittance
+/// goes from `before` to `after` in all. What is darker than a hundredth of the beginning adds nothing to speak of.
+HWY_INLINE Float count_by_opacity(Float before, Float after, float largest) {
+  const Float left = hn::Div(after, hn::Max(before, constant(1e-30f)));
+  const Float optical_depth = hn::Mul(log2_positive(hn::Max(left, constant(0.01f))), constant(-0.69314718f));
+  return hn::Ceil(hn::Mul(hn::Mul(before, optical_depth), constant(1.0f / largest)));
+}
+
 /// Writes down optical depths at the slices between two depths.
 HWY_NOINLINE inline void record_depths(const DepthRecord& record, const std::int32_t* pixels, const Float z[2],
                                        const Float transmittance[2]) {
