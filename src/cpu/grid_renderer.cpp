@@ -311,6 +311,9 @@ void GridRenderer::trace(const RenderSettings& settings, const FrameContext& con
   PlannedGrid grid = frame.grid;
   grid.plans = illustration.shadow_plans;
   if (!plan.wants_gradients) grid.field.gradients = GradientSource::kNone;
+  // Depths need not know a filtered field as well as colours; surfaces must be where the picture has them.
+  constexpr int kPartsForDepths = 4;
+  if (settings.surfaces.empty()) grid.field.most_parts = kPartsForDepths;
   GridShadowSettings exactness{frame.job.allowed_rate, frame.job.most_pieces, {}};
   std::copy_n(illustration.effects.camera_from_gradient, 9, exactness.camera_from_gradient.begin());
   const LocalFrame local{frame.view.origin, frame.view.world_per_local};

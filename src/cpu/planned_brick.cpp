@@ -15,13 +15,15 @@ void fill_planned(const PlannedGrid& grid, std::uint32_t index, BrickLattice& la
 const MarchBrick& BrickStore::find(const PlannedGrid& grid, std::uint32_t index) {
   if (kept_.empty()) kept_.resize(kSlots);
   // Multiplied by the golden ratio, neighbours along all axes are spread (Knuth 1973, section 6.4).
-  Kept& kept = kept_[(index * 0x9E3779B1u) >> 20];
+  const std::size_t slot = (index * 0x9E3779B1u) >> 20;
   static_assert(kSlots == 1u << 12);
-  if (kept.index == index) return kept.brick;
+  if (kept_[slot].index == index) return kept_[slot].brick;
   if (bytes_ > kMostBytes) {
-    kept_.assign(kSlots, {});
+    kept_.clear();  // and what the bricks hold
+    kept_.resize(kSlots);
     bytes_ = 0;
   }
+  Kept& kept = kept_[slot];
   bytes_ -= kept.bytes();
   MarchBrick brick = lattice_.describe(*grid.sources.grid, *grid.frame, index, grid.plans[index].level);
   fill_planned(grid, index, lattice_, brick);
