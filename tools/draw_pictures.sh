@@ -18,7 +18,7 @@ waves='--resolution 190,190 --transfer-function coolwarm:peaks=1 --range 0,1 --u
 # Of docs/methods/light.md: each on a mesh and on a grid.
 mesh="builtin:buckyball?cells=500000 --resolution 300,300 $ball 23"
 grid='builtin:marschner-lobb?size=96 --resolution 300,300 --filter bspline-interpolating'
-side='--lights directional:-1,0.6,-1.2 --shadows volume'
+side='--lights directional:-1,0.6,-1.2 --shadows'
 white='0.85,0.8,0.7'
 
 # Of docs/methods/multidimensional.md: each on a mesh and on a grid.
@@ -73,8 +73,10 @@ methods  surface-mesh      $mesh --isosurface 0.45:$white --volume off
 methods  surface-grid      $grid --isosurface 0.5:$white --volume off
 methods  nested-mesh       $mesh --isosurface 0.15:0.3,0.5,0.9:0.35 --isosurface 0.7:0.9,0.5,0.2 --volume off
 methods  nested-grid       builtin:hydrogen?size=64&type=float32 --resolution 300,300 $atom 19 --isosurface 0.05:0.3,0.5,0.9:0.35 --isosurface 0.3:0.9,0.5,0.2 --volume off
-methods  shadow-mesh       $mesh --isosurface 0.45:$white --volume off $side
-methods  shadow-grid       $grid --isosurface 0.5:$white --volume off $side
+methods  shadow-mesh       $mesh --isosurface 0.45:$white --volume off $side volume
+methods  shadow-grid       $grid --isosurface 0.5:$white --volume off $side volume
+methods  exact-mesh        $mesh --isosurface 0.45:$white --volume off $side exact
+methods  exact-grid        $grid --isosurface 0.5:$white --volume off $side exact
 methods  open-mesh         $mesh --isosurface 0.45:$white --volume off --ambient-occlusion 64 --material 0.7,0.3,0.1,32
 methods  open-grid         $grid --isosurface 0.5:$white --volume off --ambient-occlusion 64 --material 0.7,0.3,0.1,32
 methods  studio-mesh       $mesh --isosurface 0.45:$white --volume off --environment builtin:studio --material 0.05,0.6,0.6,120

@@ -153,7 +153,7 @@ void add_light(CLI::App& app, EffectOptions& effects) {
       "Gradient, in value ranges a diagonal, at which shading has half its strength (default: 2)",
       store(effects.gradient_threshold, parse_number));
   add(app, "--two-sided", "on|off", "Light both sides alike (default: on)", store(effects.is_two_sided, parse_switch));
-  add(app, "--shadows", "NAME", "none (default) or volume: the data shadow themselves",
+  add(app, "--shadows", "NAME", "none (default), volume or exact: the data shadow themselves",
       store(effects.shadows, named(shadow_kind_from_name)));
   add(app, "--shadow-resolution", "N", "Lattice points a side, 8 to 512 (default: 128)",
       store(effects.shadow_resolution, integer(8, 512)));

@@ -199,7 +199,7 @@ int BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick, in
   constexpr float kAddsUp = 4.0f;
   const float rate = kAddsUp * measure_bend(brick) * brick.steepness;
   int parts = std::max(brick.has_missing ? 2 : 1, least_parts);  // in the middle of a cell everything in reach counts
-  while (parts < kMostParts && rate > field.allowed_rate * static_cast<float>(parts * parts)) parts *= 2;
+  while (parts < field.most_parts && rate > field.allowed_rate * static_cast<float>(parts * parts)) parts *= 2;
   if (parts > 1) divide_cells(field, parts, brick);
   if (field.gradients == GradientSource::kKernel) filter_gradients(field, parts, brick);
   for (int axis = 0; axis < 3; ++axis) block_.count[axis] = brick.cells[axis] + 1;

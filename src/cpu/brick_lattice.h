@@ -22,6 +22,7 @@ struct LatticeField {
   const grid::BlockReader* reader = nullptr;
   std::int64_t padding = 0;                           ///< places of the reader before the grid's first value
   const grid::SeparableKernel* kernel = nullptr;      ///< null: the values themselves
+  int most_parts = 8;                                 ///< that a cell is divided into for it, along each axis
   const optics::ControlPointTable* points = nullptr;  ///< set for pre-classification: densities instead of scalars
   bool is_constant = false;                           ///< constant cells
   bool is_nearest = false;                            ///< of them: eighths of cells, each with the value of its corner
@@ -40,13 +41,11 @@ class BrickLattice {
   static void prefetch(const LatticeField& field, const PreparedGrid& grid, std::uint32_t brick);
 
   /// Reads the values of the brick described last, and points `brick` at them. With a kernel the cells are divided
-  /// until the trilinear lattice is as near to the filtered field as `brick.steepness` asks, at most into 8^3, and at
-  /// least into `least_parts` along each axis. Returns into how many.
+  /// until the trilinear lattice is as near to the filtered field as `brick.steepness` asks, at most into
+  /// `most_parts` along each axis, and at least into `least_parts`. Returns into how many.
   int fill(const LatticeField& field, MarchBrick& brick, int least_parts = 1);
 
  private:
-  static constexpr int kMostParts = 8;
-
   void place_planes(MarchBrick& brick, int parts);
   void spread_values(MarchBrick& brick);
   void read_margin(const LatticeField& field);

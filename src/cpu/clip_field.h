@@ -2,6 +2,7 @@
 
 /// Where along a ray the field of a grid, linear between its values, is at least a value.
 
+#include "src/cpu/lattice_walk.h"
 #include "src/grid/frame.h"
 #include "src/grid/values.h"
 #include "tetravox/grid.h"
@@ -12,29 +13,6 @@
 #include <vector>
 
 namespace tetravox::cpu {
-
-/// Depths [begin, end), begin < end.
-struct DepthRange {
-  double begin = 0.0, end = 0.0;
-};
-
-/// Sorted; none touches the next.
-using DepthRanges = std::vector<DepthRange>;
-
-/// Appends a range that begins where the last one ends, or later. One that touches the last becomes part of it; one
-/// without length is left out.
-inline void append_range(DepthRanges& ranges, double begin, double end) {
-  if (!(begin < end)) return;
-  if (!ranges.empty() && ranges.back().end >= begin)
-    ranges.back().end = end;
-  else
-    ranges.push_back({begin, end});
-}
-
-/// A line in any frame: origin + z * direction.
-struct DepthLine {
-  std::array<double, 3> origin{}, direction{};
-};
 
 /// A grid as something to clip with. Views the grid; safe to read from many threads.
 class ClipField {
@@ -58,16 +36,11 @@ class ClipField {
 
  private:
   struct Lattice;
-  using Index = std::array<std::int64_t, 3>;
-
-  bool cut_with_bounds(const DepthLine& line, double& z_begin, double& z_end) const;
-  template <class Visit>
-  void walk(const DepthLine& line, const Lattice& lattice, double z_begin, double z_end, const Visit& visit) const;
-  const float* values_of(const Index& brick, std::uint32_t index, Cache& cache) const;
-  void find_in_brick(const DepthLine& line, const Index& brick, const float* values, double z_begin, double z_end,
-                     DepthRanges& ranges) const;
-  void find_in_cell(const DepthLine& line, const Index& cell, const std::array<float, 8>& corners, double z_begin,
-                    double z_end, DepthRanges& ranges) const;
+  const float* values_of(const LatticeIndex& brick, std::uint32_t index, Cache& cache) const;
+  void find_in_brick(const DepthLine& line, const LatticeIndex& brick, const float* values, double z_begin,
+                     double z_end, DepthRanges& ranges) const;
+  void find_in_cell(const DepthLine& line, const LatticeIndex& cell, const std::array<float, 8>& corners,
+                    double z_begin, double z_end, DepthRanges& ranges) const;
 
   const PreparedGrid* grid_;
   grid::GridFrame frame_;

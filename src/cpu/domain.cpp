@@ -120,13 +120,15 @@ const Kernels::OfDomain& choose_domain_kernels(const Kernels& kernels, const Dom
   return domain.count == 2 ? kernels.domain_2d : kernels.domain_3d;
 }
 
-void require_domain_settings(const RenderSettings& settings) {
+void require_domain_settings(const Domain& domain, const RenderSettings& settings) {
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::kUnsupported, message); };
   if (settings.integrator == Integrator::kPre || settings.integrator == Integrator::kPost)
     fail("functions of several variables are integrated along each segment: integrator '" +
          name_of(settings.integrator) + "' does not go with them, leave it out");
   if (settings.samples_per_voxel > 0.0)
     fail("functions of several variables follow the cells, not a fixed rate: leave out the samples per voxel");
+  if (domain.is_table() && settings.lighting.shadows == ShadowKind::kExact)
+    fail("exact shadows follow functions of one variable: choose shadows 'volume'");
 }
 
 void build_occupancy(const Domain& domain, double tolerance, double diagonal, TableOccupancy& occupancy) {

@@ -55,7 +55,7 @@ Domain make_color_domain(std::size_t other, const OpticalFunction& colors, const
 const Kernels::OfDomain& choose_domain_kernels(const Kernels& kernels, const Domain& domain);
 
 /// @throws Error (kUnsupported) for settings that do not go with a domain.
-void require_domain_settings(const RenderSettings& settings);
+void require_domain_settings(const Domain& domain, const RenderSettings& settings);
 
 /// How many entries of a table absorb, over any box of them at once (summed-area table; Crow 1984).
 struct TableOccupancy {

@@ -5,9 +5,13 @@
 #include "src/cpu/frame_renderer.h"
 #include "src/cpu/grid_domain.h"
 #include "src/cpu/grid_frame.h"
+#include "src/cpu/grid_marches.h"
+#include "src/cpu/grid_shadows.h"
 #include "src/cpu/illustration.h"
+#include "src/cpu/planned_brick.h"
 #include "src/grid/summaries.h"
 #include "src/optics/antiderivative_table.h"
+#include "src/optics/extinction_integral.h"
 #include "src/optics/steepness_table.h"
 #include "src/optics/transparency_table.h"
 #include "src/support/threads.h"
@@ -35,49 +39,6 @@ constexpr float kSegmentsOfTolerance = 40.0f;
 /// left out.
 constexpr double kOneStep = 1.0 / 255.0;
 constexpr float kNegligibleOfTolerance = 0.1f;
-
-using Integrate = std::uint64_t (*)(const MarchJob&, int);
-
-/// From cell to cell, and in equal steps; both also for bricks in which scalars may be rounded to nodes of the table.
-struct Marches {
-  Integrate cells = nullptr, strides = nullptr;
-  Integrate gentle_cells = nullptr, gentle_strides = nullptr;
-};
-
-Marches choose_marches(const Kernels& kernels, bool is_constant, const RenderSettings& settings) {
-  const bool has_rate = settings.samples_per_voxel > 0.0;
-  const auto both = [](Integrate cells, Integrate strides) { return Marches{cells, strides, cells, strides}; };
-  if (is_constant) return both(kernels.march_cells, nullptr);
-  switch (settings.integrator) {
-    case Integrator::kPartial:
-      return both(has_rate ? kernels.sample_partial : kernels.march_partial, kernels.stride_partial);
-    case Integrator::kPost:
-      return both(has_rate ? kernels.sample_post : kernels.march_post, nullptr);
-    case Integrator::kPre:
-      return both(has_rate ? kernels.sample_densities : kernels.march_densities, nullptr);
-    case Integrator::kAntiderivative:
-      break;
-  }
-  return {has_rate ? kernels.sample_antiderivative : kernels.march_antiderivative, kernels.stride_antiderivative,
-          has_rate ? kernels.sample_antiderivative : kernels.march_gentle_antiderivative,
-          kernels.stride_gentle_antiderivative};
-}
-
-Marches choose_illustrated_marches(const Kernels& kernels, bool is_constant, Integrator integrator) {
-  const auto both = [](Integrate cells, Integrate strides) { return Marches{cells, strides, cells, strides}; };
-  if (is_constant) return both(kernels.illustrate_march_cells, nullptr);
-  if (integrator == Integrator::kPartial)
-    return both(kernels.illustrate_march_partial, kernels.illustrate_stride_partial);
-  if (integrator == Integrator::kPost) return both(kernels.illustrate_march_post, nullptr);
-  return {kernels.illustrate_march_antiderivative, kernels.illustrate_stride_antiderivative,
-          kernels.illustrate_march_gentle_antiderivative, kernels.illustrate_stride_gentle_antiderivative};
-}
-
-Marches choose_domain_marches(const Kernels& kernels, bool is_constant, const Domain& domain) {
-  const Kernels::OfDomain& set = choose_domain_kernels(kernels, domain);
-  const Integrate march = is_constant ? set.march_cells : set.march;
-  return {march, nullptr, march, nullptr};
-}
 
 /// The parts of a tile's rays that the clipping keeps.
 class TileIntervals {
@@ -144,9 +105,8 @@ struct FrameParts {
   GridView view;
   Rays rays;
   BrickBins bins;
-  LatticeField field;
   std::vector<LatticeField> others;
-  PlanSources sources;
+  PlannedGrid grid;
   Marches marches;
   const Kernels* kernels = nullptr;
   MarchJob job;
@@ -182,6 +142,7 @@ class GridRenderer final : public FrameRenderer {
   void set_transfer_function(const OpticalFunction& function) override {
     const ValueRange& range = grid_.scalar_range;
     control_points_ = optics::build_control_point_table(function, scalar_map());
+    extinction_ = optics::ExtinctionIntegral(function, scalar_map());
     optics::build_antiderivative_table(function, scalar_map(), range, diagonal(), antiderivative_);
     optics::build_steepness_table(control_points_, scalar_map().stored_from_value(range.min),
                                   scalar_map().stored_from_value(range.max), steepness_);
@@ -212,7 +173,7 @@ class GridRenderer final : public FrameRenderer {
   }
 
   std::uint64_t bytes() const override {
-    return antiderivative_.bytes() + control_points_.bytes() + plans_.size() * sizeof(BrickPlan) +
+    return antiderivative_.bytes() + control_points_.bytes() + extinction_.bytes() + plans_.size() * sizeof(BrickPlan) +
            (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_ +
            centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes();
   }
@@ -231,6 +192,7 @@ class GridRenderer final : public FrameRenderer {
   void fill_lattices(const FrameParts& frame, std::uint32_t index, Workspace& workspace, MarchBrick& brick) const;
   GradientSource choose_gradients(const RenderSettings& settings) const;
   void describe(const RenderSettings& settings, const FrameContext& context, FrameParts& frame);
+  void trace(const RenderSettings& settings, const FrameContext& context, FrameParts& frame) const;
   ShadowedBody shadowed_body() const;
   void prepare_shadows(const Camera& camera, const RenderSettings& settings, const FrameContext& context);
   struct Pass;
@@ -238,6 +200,7 @@ class GridRenderer final : public FrameRenderer {
   void draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics);
   LatticeField lattice_field(const RenderSettings& settings, const Kernels& kernels) const;
   PlanSources plan_sources(const RenderSettings& settings) const;
+  PlanSettings plan_settings(const RenderSettings& settings) const;
   void plan(const RenderSettings& settings);
   MarchJob make_job(const RenderSettings& settings, const IntegratorTables& tables) const;
   std::uint64_t draw_brick(const FrameParts& frame, const TilePlace& place, const BinnedBrick& binned,
@@ -252,6 +215,7 @@ class GridRenderer final : public FrameRenderer {
   GridDomain domain_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
+  optics::ExtinctionIntegral extinction_;
   optics::SteepnessTable steepness_;
   bool has_centroids_ = false;
   optics::CentroidTable centroids_;  // made at the first frame with light
@@ -318,6 +282,28 @@ void GridRenderer::describe(const RenderSettings& settings, const FrameContext& 
   shadows_.attach(settings, shadowed_body(), frame.view.camera, frame.illustration);
 }
 
+/// Shadows by rays.
+void GridRenderer::trace(const RenderSettings& settings, const FrameContext& context, FrameParts& frame) const {
+  Illustration& illustration = frame.illustration;
+  if (settings.lighting.shadows != ShadowKind::kExact || illustration.lights.empty()) return;
+  // Where nobody asks for gradients, larger cells will do.
+  PlanSettings plan = plan_settings(settings);
+  plan.wants_gradients = settings.opacity_weight == OpacityWeight::kGradient;
+  illustration.shadow_plans = plan_bricks(frame.grid.sources, plan);
+  PlannedGrid grid = frame.grid;
+  grid.plans = illustration.shadow_plans;
+  if (!plan.wants_gradients) grid.field.gradients = GradientSource::kNone;
+  // Depths need not know a filtered field as well as colours; surfaces must be where the picture has them.
+  constexpr int kPartsForDepths = 4;
+  if (settings.surfaces.empty()) grid.field.most_parts = kPartsForDepths;
+  GridShadowSettings exactness{frame.job.allowed_rate, frame.job.most_pieces, {}};
+  std::copy_n(illustration.effects.camera_from_gradient, 9, exactness.camera_from_gradient.begin());
+  const LocalFrame local{frame.view.origin, frame.view.world_per_local};
+  illustration.medium =
+      std::make_unique<GridShadows>(grid, local, make_shadow_optics(settings, extinction_, illustration), exactness);
+  trace_shadows(settings, {frame.view.camera, local.origin, local.world_per_local}, context, illustration);
+}
+
 ShadowedBody GridRenderer::shadowed_body() const {
   const LocalFrame local = find_local_frame(drawn());
   return {drawn().bounds, local.origin, local.world_per_local};
@@ -339,13 +325,18 @@ PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
           domain_.is_set(), {}};
 }
 
-void GridRenderer::plan(const RenderSettings& settings) {
+PlanSettings GridRenderer::plan_settings(const RenderSettings& settings) const {
   PlanSettings wanted{settings.filter,           settings.integrator,
                       settings.tolerance,        settings.samples_per_voxel,
                       wants_gradients(settings), {}};
   for (const Isosurface& surface : settings.surfaces)
     wanted.surface_values.push_back(scalar_map().stored_from_value(surface.value));
   std::sort(wanted.surface_values.begin(), wanted.surface_values.end());
+  return wanted;
+}
+
+void GridRenderer::plan(const RenderSettings& settings) {
+  const PlanSettings wanted = plan_settings(settings);
   if (is_planned_ && wanted == planned_for_) return;
   PlanSources sources = plan_sources(settings);
   if (domain_.domain().is_table()) sources.is_seen = domain_.find_seen();
@@ -373,12 +364,9 @@ MarchJob GridRenderer::make_job(const RenderSettings& settings, const Integrator
 /// Reads the values of a brick, and what the function asks for beside them.
 void GridRenderer::fill_lattices(const FrameParts& frame, std::uint32_t index, Workspace& workspace,
                                  MarchBrick& brick) const {
-  if (domain_.is_set())
-    return domain_.fill({drawn(), frame_, frame.field, frame.others, index}, workspace.lattices, brick);
-  const ValueRange range = range_of(frame.sources, index);
-  brick.steepness = steepness_.largest_steepness(static_cast<float>(range.min), static_cast<float>(range.max));
-  brick.has_missing |= field_.kernel && drawn().missing_values > 0;  // a kernel reaches into other bricks
-  workspace.lattices.value.fill(frame.field, brick);
+  if (!domain_.is_set()) return fill_planned(frame.grid, index, workspace.lattices.value, brick);
+  domain_.fill({drawn(), frame_, frame.grid.field, frame.others, index}, workspace.lattices, brick);
+  if (!plans_[index].is_curved) brick.steepness = 0.0f;
 }
 
 /// Takes the rays of the workspace through a brick; returns how many segments they had.
@@ -404,7 +392,6 @@ std::uint64_t GridRenderer::draw_brick(const FrameParts& frame, const TilePlace&
     if (count == 0) continue;
     if (!is_filled) {
       fill_lattices(frame, binned.brick, workspace, brick);
-      if (!plan.is_curved) brick.steepness = 0.0f;
       is_filled = true;
     }
     segments += march(job, count);
@@ -426,7 +413,7 @@ TileCounts GridRenderer::draw_tile(const FrameParts& frame, std::size_t tile, Wo
   frame.kernels->start_march(start);
   if (frame.has_clipping) workspace.intervals.find(frame.clip, frame.rays.grid, column, row, *workspace.rays);
   for (std::size_t i = 0; i < bricks.size(); ++i) {
-    if (i + 1 < bricks.size()) BrickLattice::prefetch(frame.field, drawn(), bricks[i + 1].brick);
+    if (i + 1 < bricks.size()) BrickLattice::prefetch(frame.grid.field, drawn(), bricks[i + 1].brick);
     counts.segments += draw_brick(frame, {column, row}, bricks[i], workspace);
   }
   const MarchRays& rays = *workspace.rays;
@@ -459,7 +446,7 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
         ErrorCode::kInvalidArgument,
         "pre-classification does not go with the filter 'bspline-interpolating': choose 'bspline' or 'catmull-rom'");
   const bool has_effects = wants_effects(settings) || domain_.is_set();
-  if (domain_.is_set()) require_domain_settings(settings);
+  if (domain_.is_set()) require_domain_settings(domain_.domain(), settings);
   if (has_effects) require_effects(settings, is_constant(settings));
   const support::Timer timer;
   prepare_filter(settings);
@@ -505,14 +492,14 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
   frame.view = make_grid_view(drawn(), frame_, pass.camera, settings.width, settings.height);
   frame.rays = make_rays(frame.view.camera, frame.view.world_per_local);
   frame.bins = bin_bricks(drawn(), frame_, visible_, frame.view);
-  frame.field = lattice_field(settings, kernels);
-  frame.others = domain_.make_fields(frame.field);
-  frame.sources = plan_sources(settings);
+  frame.grid = {&frame_, lattice_field(settings, kernels), plan_sources(settings), plans_};
+  frame.others = domain_.make_fields(frame.grid.field);
   frame.marches = choose_kernels(kernels, settings, has_effects);
   frame.kernels = &kernels;
   frame.job = make_job(settings, tables);
   frame.job.grid = &frame.rays.grid;
   if (has_effects) describe(settings, context, frame);
+  if (has_effects) trace(settings, context, frame);
   frame.illustration.effects.record = pass.record;
   if (settings.wants_depth) frame.illustration.effects.depth = image.depth.data();
   frame.has_clipping = !settings.clipping.shapes.empty();
@@ -534,6 +521,7 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
       tile_progress.tile_done();
     }
   });
+  support::throw_if_cancelled(progress);  // the last tile may have been given up
   if (settings.wants_depth) measure_depth(frame.view.camera, frame.view.world_per_local, image);
   statistics.segments = segments;
   statistics.rays = met_rays;
@@ -561,7 +549,13 @@ std::uint64_t estimate_render_memory(const GridData& grid, const RenderSettings&
   const std::uint64_t coefficients = settings.filter.kind == FilterKind::kInterpolatingBspline
                                          ? 2 * (values[0] + 4) * (values[1] + 4) * (values[2] + 4) * sizeof(float)
                                          : 0;
-  return pixels * 4 * sizeof(float) + bricks * of_brick + coefficients + kTables;
+  std::uint64_t shadows = 0;
+  if (settings.lighting.shadows == ShadowKind::kExact && settings.lighting.is_lit()) {
+    const auto threads =
+        static_cast<std::uint64_t>(settings.threads > 0 ? settings.threads : support::hardware_threads());
+    shadows = threads * std::min<std::uint64_t>(bricks * cpu::BrickStore::kBytesOfBrick, cpu::BrickStore::kMostBytes);
+  }
+  return pixels * 4 * sizeof(float) + bricks * of_brick + coefficients + shadows + kTables;
 }
 
 }  // namespace tetravox

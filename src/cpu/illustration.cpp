@@ -23,6 +23,11 @@ constexpr float kBiasInSteps = 1.5f, kLitInSteps = 1.5f;
 
 /// Of the tolerance: by how much the light of one stretch may err. Errors of many stretches hardly add up.
 constexpr double kTurningOfTolerance = 1.0 / 4.0;
+/// Of exact shadows: by what local length surfaces are moved off themselves; what opacity may be lit as its middle is,
+/// at the default tolerance and at most (half of that is what the end of a sharp shadow may be off, its square what a
+/// bend of the light may); and how much less than the tolerance need not come through.
+constexpr float kRayBias = 1e-4f;
+constexpr double kLitAlike = 0.02, kUsualTolerance = 2e-3, kDarkOfTolerance = 1e-2;
 
 LightSource make_light(const Light& light, const IllustratedFrame& frame) {
   LightSource source;
@@ -100,6 +105,7 @@ void limit_light_error(const Lighting& lighting, double tolerance, Effects& effe
   double brightness = 0.0;
   for (const Light& light : lighting.lights)
     brightness += light.intensity * std::max({light.color[0], light.color[1], light.color[2]});
+  if (lighting.environment) brightness += lighting.environment->intensity;
   const double diffuse = brightness * lighting.material.diffuse / allowed;
   const double specular = brightness * lighting.material.specular / allowed;
   // Near its top cos^N is exp(-N x^2 / 2), whose derivatives are largest at these values.
@@ -164,7 +170,7 @@ void ShadowCache::attach(const RenderSettings& settings, const ShadowedBody& bod
   Shading& shading = illustration.shading;
   const float step = find_shadow_step(settings, body);
   shading.shadow_bias = kBiasInSteps * step;
-  if (settings.lighting.shadows != ShadowKind::kNone || settings.lighting.ambient_occlusion > 0)
+  if (settings.lighting.shadows == ShadowKind::kVolume || settings.lighting.ambient_occlusion > 0)
     illustration.effects.longest_lit = kLitInSteps * step;
   if (settings.lighting.shadows == ShadowKind::kVolume) {
     for (const std::vector<LightDepths>& light : lights_) {
@@ -178,6 +184,23 @@ void ShadowCache::attach(const RenderSettings& settings, const ShadowedBody& bod
     illustration.occlusion = make_occlusion_map(openness_, body, camera);
     shading.occlusion = &illustration.occlusion;
   }
+}
+
+ShadowOptics make_shadow_optics(const RenderSettings& settings, const optics::ExtinctionIntegral& extinction,
+                                const Illustration& illustration) {
+  const Effects& effects = illustration.effects;
+  return {&extinction, effects.surfaces, effects.weight_by_change, effects.weight_by_gradient,
+          -std::log(kDarkOfTolerance * settings.tolerance)};
+}
+
+void trace_shadows(const RenderSettings& settings, const ShadowFrame& frame, const FrameContext& context,
+                   Illustration& illustration) {
+  illustration.rays =
+      std::make_unique<ShadowRays>(frame, *illustration.medium, settings.clipping, context.clip_volumes);
+  illustration.rays->attach(settings.lighting.lights, illustration.lights, context.progress.cancelled);
+  illustration.shading.ray_bias = kRayBias;
+  const double fineness = std::sqrt(std::min(1.0, settings.tolerance / kUsualTolerance));
+  illustration.effects.largest_lit = static_cast<float>(kLitAlike * fineness);
 }
 
 Vector3 to_camera(const CameraFrame& camera, const Vector3& direction) {

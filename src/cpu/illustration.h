@@ -2,8 +2,11 @@
 
 /// The effects of a frame: what RenderSettings ask for beside emission and absorption, as the kernels want it.
 
+#include "src/cpu/brick_plan.h"
 #include "src/cpu/frame.h"
+#include "src/cpu/frame_renderer.h"
 #include "src/cpu/kernels/effects.h"
+#include "src/cpu/shadow_rays.h"
 #include "src/cpu/shadows.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/centroid_table.h"
@@ -12,6 +15,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,6 +43,9 @@ struct Illustration {
 
   std::vector<LightSource> lights;
   std::vector<std::vector<ShadowMap>> shadows;  ///< of each light
+  std::vector<BrickPlan> shadow_plans;          ///< for exact shadows in grids
+  std::unique_ptr<ShadowMedium> medium;         ///< for exact shadows
+  std::unique_ptr<ShadowRays> rays;
   OcclusionMap occlusion;
   EnvironmentMaps environment;
   std::vector<SurfaceSheet> sheets;
@@ -57,6 +64,14 @@ void require_effects(const RenderSettings& settings, bool has_constant_cells);
 
 /// Fills all but shadows, occlusion, depth and record.
 void illustrate(const RenderSettings& settings, const IllustratedFrame& frame, Illustration& illustration);
+
+/// The extinction, surfaces and weights of an illustration that is filled, for exact shadows.
+ShadowOptics make_shadow_optics(const RenderSettings& settings, const optics::ExtinctionIntegral& extinction,
+                                const Illustration& illustration);
+
+/// Lights the frame through `illustration.medium` by rays. Views the context's clip volumes.
+void trace_shadows(const RenderSettings& settings, const ShadowFrame& frame, const FrameContext& context,
+                   Illustration& illustration);
 
 /// What lights see, from frame to frame as long as nothing changes.
 class ShadowCache {

@@ -5,8 +5,10 @@
 #include "src/cpu/frame.h"
 #include "src/cpu/frame_renderer.h"
 #include "src/cpu/illustration.h"
+#include "src/cpu/mesh_shadows.h"
 #include "src/mesh/gradients.h"
 #include "src/optics/antiderivative_table.h"
+#include "src/optics/extinction_integral.h"
 #include "src/optics/transparency_table.h"
 #include "src/support/memory.h"
 #include "src/support/threads.h"
@@ -117,6 +119,7 @@ class MeshRenderer final : public FrameRenderer {
   void set_transfer_function(const OpticalFunction& function) override {
     const optics::ScalarMap map{mesh_.scalar_offset, mesh_.scalar_scale};
     control_points_ = optics::build_control_point_table(function, map);
+    extinction_ = optics::ExtinctionIntegral(function, map);
     if (mesh_.association == Association::kPoint)
       optics::build_antiderivative_table(function, map, mesh_.scalar_range, diagonal(), antiderivative_);
     has_centroids_ = false;
@@ -145,9 +148,9 @@ class MeshRenderer final : public FrameRenderer {
 
   std::uint64_t bytes() const override {
     return (vertices_ ? mesh_.vertices.size() * 4 * sizeof(float) : 0) + frame_bytes_ + antiderivative_.bytes() +
-           control_points_.bytes() + gradients_.records.size() * sizeof(mesh::Gradient) +
-           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() +
-           occupancy_.sums.size() * sizeof(std::int32_t);
+           control_points_.bytes() + extinction_.bytes() + boundary_.bytes() +
+           gradients_.records.size() * sizeof(mesh::Gradient) + centroids_.sums.size() * sizeof(std::int32_t) +
+           shadows_.bytes() + domain_.bytes() + occupancy_.sums.size() * sizeof(std::int32_t);
   }
 
   Source source() const override { return Source::kWalk; }
@@ -170,6 +173,8 @@ class MeshRenderer final : public FrameRenderer {
   TableOccupancy occupancy_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
+  optics::ExtinctionIntegral extinction_;
+  FaceTree boundary_;  // made at the first frame with exact shadows
   bool has_centroids_ = false;
   optics::CentroidTable centroids_;  // made at the first frame with light
   MeshGradients gradients_;
@@ -217,6 +222,7 @@ void MeshRenderer::prepare_effects(const RenderSettings& settings) {
     optics::build_centroid_table(antiderivative_, centroids_);
     has_centroids_ = true;
   }
+  if (settings.lighting.shadows == ShadowKind::kExact && boundary_.is_empty()) boundary_ = FaceTree(mesh_);
   GradientMethod method = settings.lighting.gradient;
   if (method == GradientMethod::kDefault) method = GradientMethod::kVertex;
   if (method != GradientMethod::kVertex && method != GradientMethod::kCell)
@@ -252,13 +258,18 @@ void MeshRenderer::describe(const RenderSettings& settings, const FrameContext& 
       illustrated.camera_from_gradient[3 * row + column] = frame.camera.axes[row][column];
   illustrate(settings, illustrated, illustration);
   shadows_.attach(settings, shadowed_body(), frame.camera, illustration);
+  if (settings.lighting.shadows != ShadowKind::kExact || illustration.lights.empty()) return;
+  illustration.medium =
+      std::make_unique<MeshShadows>(mesh_, boundary_, make_shadow_optics(settings, extinction_, illustration),
+                                    gradients_.records, frame.mesh.has_cell_gradients);
+  trace_shadows(settings, {frame.camera, mesh_.origin, mesh_.world_per_local}, context, illustration);
 }
 
 void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, const FrameContext& context,
                           Image& image, RenderStatistics& statistics) {
   if (!vertices_) vertices_ = std::make_unique_for_overwrite<float[]>(4 * mesh_.vertices.size());
   const bool has_effects = wants_effects(settings) || domain_.is_set();
-  if (domain_.is_set()) require_domain_settings(settings);
+  if (domain_.is_set()) require_domain_settings(domain_, settings);
   if (has_effects) {
     require_effects(settings, mesh_.association == Association::kCell);
     prepare_effects(settings);
@@ -314,6 +325,7 @@ void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
       tile_progress.tile_done();
     }
   });
+  support::throw_if_cancelled(context.progress);  // the last tile may have been given up
   if (settings.wants_depth) measure_depth(frame.camera, mesh_.world_per_local, image);
   statistics.segments = segments;
   statistics.rays = rays;
@@ -338,8 +350,11 @@ std::uint64_t estimate_render_memory(std::uint64_t vertices, std::uint64_t bound
                                      const RenderSettings& settings) {
   const std::uint64_t pixels = static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height);
   const std::uint64_t tables = 4u << 20;
+  // Exact shadows: a tree over the faces, and for each light those that it enters, while they are sorted.
+  const bool has_rays = settings.lighting.shadows == ShadowKind::kExact;
+  const std::uint64_t shadows = has_rays ? 64 + 96 * settings.lighting.lights.size() : 0;
   return pixels * 4 * sizeof(float) + vertices * 4 * sizeof(float) +
-         boundary_faces * (sizeof(BoundaryFace) + 4 * sizeof(cpu::BinnedFace)) + tables;
+         boundary_faces * (sizeof(BoundaryFace) + 4 * sizeof(cpu::BinnedFace) + shadows) + tables;
 }
 
 }  // namespace tetravox

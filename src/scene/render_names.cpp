@@ -48,9 +48,10 @@ constexpr std::array<Name<LightKind>, 3> kLightKinds{{{LightKind::kHeadlight, "h
                                                       {LightKind::kDirectional, "directional", "parallel rays"},
                                                       {LightKind::kPoint, "point", "shines from a place"}}};
 
-constexpr std::array<Name<ShadowKind>, 2> kShadowKinds{
+constexpr std::array<Name<ShadowKind>, 3> kShadowKinds{
     {{ShadowKind::kNone, "none", "light reaches everything"},
-     {ShadowKind::kVolume, "volume", "optical depth towards each light, on a lattice that it sees"}}};
+     {ShadowKind::kVolume, "volume", "optical depth towards each light, on a lattice that it sees"},
+     {ShadowKind::kExact, "exact", "a ray from each light to each place that is lit: sharp, slow, for stills"}}};
 
 constexpr std::array<Name<VariableKind>, 3> kVariableKinds{
     {{VariableKind::kValue, "value", "the value drawn"},

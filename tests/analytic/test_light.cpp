@@ -1,7 +1,6 @@
 /// Lit volumes: against the model in double precision, and what must not change a picture.
 
-#include "tests/analytic/cube.h"
-#include "tests/analytic/light_model.h"
+#include "tests/analytic/lit.h"
 #include "tests/analytic/show.h"
 #include "tests/common/functions.h"
 #include "tests/common/grid_builder.h"
@@ -19,37 +18,7 @@
 namespace tetravox::analytic {
 namespace {
 
-double linear_field(const Vector3& p) { return 0.5 + 0.2 * p[0] + 0.15 * p[1] - 0.1 * p[2]; }
-const Vector3 kSlope{0.2, 0.15, -0.1};
 double square_norm(const Vector3& p) { return dot(p, p); }
-
-Light directional(const Vector3& direction) { return {LightKind::kDirectional, direction, {}, {1, 1, 1}, 1.0}; }
-
-/// Grids and meshes of [-1, 1]^3.
-class Lit : public ::testing::TestWithParam<bool> {
- protected:
-  static bool is_grid() { return GetParam(); }
-  static tests::Body cube(int cells, const tests::Field& field) { return make_cube(is_grid(), cells, field); }
-  static RenderSettings make_settings(double tolerance) {
-    RenderSettings settings = make_careful_settings(Integrator::kAntiderivative);
-    settings.tolerance = tolerance;
-    return settings;
-  }
-};
-
-/// Emission in the light that `light_at` finds, absorption, along a chord.
-Rgba integrate_lit(const Ray& ray, const Chord& chord, const Color& color,
-                   const std::function<Illumination(const Vector3&)>& light_at) {
-  if (chord.length() == 0.0) return {};
-  constexpr int kSteps = 150;  // an error of 1e-5
-  return integrate(
-      chord.length(),
-      [&](double u) {
-        const Vector3 place = ray.at(chord.near + u * chord.length());
-        return Medium{kExtinction, light_at(place).apply(color)};
-      },
-      kSteps);
-}
 
 TEST_P(Lit, LinearFieldHasTheModelsLight) {
   const tests::Body body = cube(12, linear_field);
@@ -143,149 +112,6 @@ TEST_P(Lit, SphereOfAStepHasTheModelsLight) {
       }
     EXPECT_LT(worst, 4e-3) << name;
   }
-}
-
-/// Distance from a place inside the cube to its border, against the light.
-double way_to_light(const Vector3& place, const Vector3& direction) {
-  double way = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (direction[axis] == 0.0) continue;
-    const double border = direction[axis] > 0.0 ? kLower[axis] : kUpper[axis];
-    way = std::min(way, (place[axis] - border) / direction[axis]);
-  }
-  return way;
-}
-
-class Shadowed : public Lit {
- protected:
-  /// `max` and `rms`: allowed differences.
-  static void expect_beer(const Light& light, const std::pair<const char*, Camera>& view, double max, double rms) {
-    const tests::Body body = cube(is_grid() ? 64 : 24, [](const Vector3&) { return 0.5; });
-    RenderSettings settings = make_settings(1e-4);
-    settings.lighting.lights = {light};
-    settings.lighting.material = {0.2, 0.8, 0.3, 12.0};
-    settings.lighting.shadows = ShadowKind::kVolume;
-    const Image image = body.draw(kHomogeneous, view.second, settings);
-    Image expected = image;
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) {
-        const Ray ray = make_ray(view.second, image.width, image.height, x, y);
-        const auto light_at = [&](const Vector3& place) {
-          Vector3 direction = ray.direction;
-          if (light.kind == LightKind::kDirectional) direction = normalized(light.direction);
-          if (light.kind == LightKind::kPoint) direction = normalized(difference(place, light.position));
-          return illuminate(settings.lighting, ray.direction, place, {}, 0.0, [&](const Light&, const Vector3& p) {
-            return std::exp(-kExtinction * way_to_light(p, direction));
-          });
-        };
-        const Rgba wanted = integrate_lit(ray, intersect_box(ray, kLower, kUpper), kColor, light_at);
-        for (int k = 0; k < 4; ++k) expected.pixel(x, y)[k] = static_cast<float>(wanted[k]);
-      }
-    EXPECT_GT(tests::count_covered(image), 400u) << view.first;
-    EXPECT_TRUE(tests::images_agree(image, expected, max, rms)) << view.first;
-  }
-  /// Where edges of the cube lie between the places of the lattice, the depth behind them has a kink.
-  static void expect_beer_with_kinks(const Light& light, const std::pair<const char*, Camera>& view) {
-    expect_beer(light, view, 1e-2, 1e-3);
-  }
-};
-
-TEST_P(Shadowed, LightAlongAnAxis) {
-  for (const auto& view : standard_cameras())
-    for (const Vector3& direction : {Vector3{1, 0, 0}, Vector3{0, -3, 0}, Vector3{0, 0, 1}})
-      expect_beer(directional(direction), view, 1e-3, 5e-4);
-}
-
-TEST_P(Shadowed, LightFromTheSide) {
-  for (const auto& view : standard_cameras()) expect_beer_with_kinks(directional({1.0, -0.6, 0.4}), view);
-}
-
-TEST_P(Shadowed, LightAlongTheViewAndAgainstIt) {
-  const auto view = standard_cameras()[1];
-  const Vector3 along = difference(view.second.focal_point, view.second.position);
-  for (const double sign : {1.0, -1.0}) expect_beer_with_kinks(directional(scaled(along, sign)), view);
-}
-
-TEST_P(Shadowed, Headlight) {
-  const auto cameras = standard_cameras();
-  for (const std::size_t i : {0u, 1u}) expect_beer_with_kinks({}, cameras[i]);
-}
-
-TEST_P(Shadowed, PointLight) {
-  Light light;
-  light.kind = LightKind::kPoint;
-  for (const Vector3& position : {Vector3{3.0, -2.0, 2.5}, Vector3{1.4, 0.2, -0.1}}) {
-    light.position = position;
-    for (const auto& view : standard_cameras()) expect_beer_with_kinks(light, view);
-  }
-}
-
-TEST_P(Lit, WhatShadowsDependOnIsSeenAgain) {
-  const tests::Body body = cube(12, linear_field);
-  const Camera camera = standard_cameras()[0].second;
-  Renderer renderer = body.make_renderer();
-  RenderSettings settings = make_settings(1e-3);
-  settings.lighting.shadows = ShadowKind::kVolume;
-  settings.lighting.shadow_resolution = 32;
-  settings.lighting.lights = {directional({1, 0, 0})};
-  const auto sphere_grid = [](double radius) {
-    return tests::make_grid({}, [radius](const Vector3& p) { return radius - norm(p); });
-  };
-  const PreparedGrid large = prepare_grid(sphere_grid(0.9)), small = prepare_grid(sphere_grid(0.5));
-  const PreparedGrid* volume = &large;
-  OpticalFunction function = kHomogeneous;
-  const auto expect_fresh = [&](const char* what) {
-    renderer.set_transfer_function(function);
-    renderer.set_clip_volume(0, *volume);
-    Renderer fresh = body.make_renderer();
-    fresh.set_transfer_function(function);
-    fresh.set_clip_volume(0, *volume);
-    EXPECT_TRUE(tests::images_equal(renderer.render(camera, settings), fresh.render(camera, settings))) << what;
-  };
-  expect_fresh("first");
-  settings.lighting.lights[0].direction = {0, 1, 0};
-  expect_fresh("light");
-  settings.lighting.shadow_resolution = 24;
-  expect_fresh("resolution");
-  function.points[0].extinction = 2.5;
-  expect_fresh("function");
-  settings.surfaces = {{0.4, {1, 0, 0}, {0, 1, 0}, 0.7, true}};
-  expect_fresh("surface");
-  settings.clipping.shapes = {{ClipPlane{{0.1, 0, 0}, {1, 1, 0}}, true}};
-  expect_fresh("clip plane");
-  settings.clipping.shapes = {{ClipVolume{"a.nrrd", "", 0.0}, true}};
-  expect_fresh("clip volume");
-  volume = &small;
-  expect_fresh("another clip volume");
-  settings.opacity_weight = OpacityWeight::kGradient;
-  expect_fresh("opacity weight");
-  settings.lighting.ambient_occlusion = 8;
-  expect_fresh("occlusion");
-  settings.lighting.occlusion_seed = 7;
-  expect_fresh("occlusion's seed");
-}
-
-TEST_P(Lit, AnotherClipVolumeThrowsAnotherShadow) {
-  const tests::Body body = cube(12, linear_field);
-  const Camera camera = standard_cameras()[0].second;
-  RenderSettings settings = make_settings(1e-3);
-  settings.lighting.shadows = ShadowKind::kVolume;
-  settings.lighting.shadow_resolution = 32;
-  settings.lighting.lights = {directional({1, 0, 0})};
-  settings.lighting.ambient_occlusion = 4;
-  settings.clipping.shapes = {{ClipVolume{"a.nrrd", "", 0.0}, true}};
-  const auto sphere_grid = [](double radius) {
-    return prepare_grid(tests::make_grid({}, [radius](const Vector3& p) { return radius - norm(p); }));
-  };
-  const PreparedGrid large = sphere_grid(0.9), small = sphere_grid(0.5);
-  Renderer kept = body.make_renderer(), fresh = body.make_renderer();
-  kept.set_transfer_function(kHomogeneous);
-  fresh.set_transfer_function(kHomogeneous);
-  kept.set_clip_volume(0, large);
-  kept.render(camera, settings);
-  kept.set_clip_volume(0, small);
-  fresh.set_clip_volume(0, small);
-  EXPECT_TRUE(tests::images_equal(kept.render(camera, settings), fresh.render(camera, settings)));
 }
 
 TEST_P(Lit, OpacityFollowsTheScalarsChange) {
@@ -473,9 +299,7 @@ TEST_P(Lit, WhatDoesNotGoTogetherIsAnError) {
   expect_error(normal, "normal of a clip plane");
 }
 
-const auto kName = [](const auto& test) { return test.param ? "grid" : "mesh"; };
-INSTANTIATE_TEST_SUITE_P(All, Lit, ::testing::Bool(), kName);
-INSTANTIATE_TEST_SUITE_P(All, Shadowed, ::testing::Bool(), kName);
+INSTANTIATE_TEST_SUITE_P(All, Lit, ::testing::Bool(), kNameOfBody);
 
 }  // namespace
 }  // namespace tetravox::analytic

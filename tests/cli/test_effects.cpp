@@ -257,6 +257,7 @@ TEST_F(Effects, EachChangesThePicture) {
   const std::vector<std::vector<std::string>> all = {{"--shade"},
                                                      {"--lights", "directional:1,0,0:1,0.5,0.5*2;point:3,0,0"},
                                                      {"--shade", "--shadows", "volume", "--shadow-resolution", "16"},
+                                                     {"--shade", "--shadows", "exact"},
                                                      {"--ambient-occlusion", "3", "--shadow-resolution", "16"},
                                                      {"--environment", "builtin:sky"},
                                                      {"--isosurface", "0.5"},

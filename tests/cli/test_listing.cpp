@@ -35,7 +35,7 @@ TEST_F(Listing, Topics) {
   expect_text({"list", "environments"}, {"builtin:studio", "builtin:sky", "builtin:room"});
   expect_text({"list", "methods"},
               {"walk", "antiderivative", "partial", "post", "Gradients (--gradient)", "central", "Shadows (--shadows)",
-               "Opacity weights (--opacity-weight)", "scalar-difference", "Instruction sets"});
+               "exact", "Opacity weights (--opacity-weight)", "scalar-difference", "Instruction sets"});
 }
 
 TEST_F(Listing, InfoOfAFile) {

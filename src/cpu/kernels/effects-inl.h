@@ -10,6 +10,7 @@
 
 #include "src/cpu/kernels/effects.h"
 #include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/lit_places-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/shading-inl.h"
 #include "src/cpu/kernels/stretches-inl.h"
@@ -33,8 +34,9 @@ class EffectIntegrator {
   explicit EffectIntegrator(const IntegratorTables& tables)
       : base_(tables),
         effects_(*tables.effects),
-        is_light_all_(!kIsOfDomain && effects_.shading && effects_.longest_lit == 0.0f && !is_weighted() &&
-                      !effects_.depth && !effects_.record),
+        is_light_cut_(effects_.longest_lit > 0.0f || effects_.largest_lit > 0.0f),
+        is_light_all_(!kIsOfDomain && effects_.shading && !is_light_cut_ && !is_weighted() && !effects_.depth &&
+                      !effects_.record),
         is_lit_from_eye_(effects_.shading && is_lit_from_eye(*effects_.shading)) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return base_.front_at(scalar); }
@@ -42,7 +44,7 @@ class EffectIntegrator {
 
   /// Whether linear stretches without surfaces need light, and nothing else: then `integrate_lit_segment` serves.
   HWY_INLINE bool is_light_all(const Segments& segment) const {
-    return is_light_all_ && (HWY_LIKELY(effects_.surfaces.empty()) || !meets_surface(segment));
+    return is_light_all_ && (HWY_LIKELY(effects_.surfaces.empty()) || !meets_surface(effects_, segment));
   }
 
   /// A whole linear stretch. It is only made where it needs light.
@@ -56,7 +58,7 @@ class EffectIntegrator {
       const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
       const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
       if (hn::AllFalse(kFloat, bright)) {
-        add_usual(part, sum);
+        add_in_light(part, effects_.usual_light, sum);  // too faint for a normal
         return;
       }
       const auto stretch = make_stretch();
@@ -76,7 +78,7 @@ class EffectIntegrator {
                                       Accumulated& sum, Float& depth) const {
     const Cut begin = cut_at(stretch, from), end = cut_at(stretch, to);
     const Walk<Stretch> walk{stretch, ray, front, sum, depth};
-    if (HWY_UNLIKELY(meets_surface(stretch, begin, end)))
+    if (HWY_UNLIKELY(meets_surface(effects_, stretch, begin, end)))
       pass_surfaces(walk, begin, end);
     else
       integrate_volume(walk, begin, end);
@@ -94,35 +96,6 @@ class EffectIntegrator {
   };
 
   // ---- surfaces ----
-
-  /// Whether a surface is met on a linear segment.
-  HWY_INLINE bool meets_surface(const Segments& segment) const {
-    Mask met = hn::FirstN(kFloat, 0);
-    for (const SurfaceSheet& sheet : effects_.surfaces) {
-      const Float value = constant(sheet.value);
-      met = hn::Or(met, hn::Xor(hn::Lt(segment.scalar_front, value), hn::Lt(segment.scalar_back, value)));
-    }
-    return !hn::AllFalse(kFloat, hn::And(met, hn::Gt(segment.length, constant(0.0f))));
-  }
-
-  /// Whether a surface may be met anywhere between two cuts.
-  template <class Stretch>
-  HWY_INLINE bool meets_surface(const Stretch& stretch, const Cut& begin, const Cut& end) const {
-    if (effects_.surfaces.empty()) return false;
-    Float low = hn::Min(begin.scalar, end.scalar), high = hn::Max(begin.scalar, end.scalar);
-    if constexpr (!Stretch::kIsLinear) {
-      const Float bend = hn::Mul(constant(1.5f), stretch.bend());
-      low = hn::Sub(low, bend);
-      high = hn::Add(high, bend);
-    }
-    const Mask lanes = hn::Gt(stretch.length, constant(0.0f));
-    Mask met = hn::FirstN(kFloat, 0);
-    for (const SurfaceSheet& sheet : effects_.surfaces) {
-      const Float value = constant(sheet.value);
-      met = hn::Or(met, hn::And(hn::Le(low, value), hn::Ge(high, value)));
-    }
-    return !hn::AllFalse(kFloat, hn::And(met, lanes));
-  }
 
   /// Draws what lies between two cuts, surfaces and volume in turns. Between its extrema the scalar is monotone, so
   /// that a ray meets surfaces in the order of their values.
@@ -201,7 +174,7 @@ class EffectIntegrator {
   HWY_INLINE void integrate_volume(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
     if (!effects_.shading)
       integrate_pieces(walk, begin, end, walk.sum, nullptr);
-    else if (effects_.longest_lit > 0.0f)
+    else if (is_light_cut_)
       integrate_lit_parts(walk, begin, end);
     else
       integrate_lit(walk, begin, end);
@@ -212,10 +185,11 @@ class EffectIntegrator {
   HWY_NOINLINE void integrate_lit_parts(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
     constexpr float kMostParts = 256.0f;
     const Float one = constant(1.0f), span = hn::Sub(end.u, begin.u);
-    const Triple direction = walk.ray.direction();
-    const Float depth = hn::Sub(depth_at(walk.stretch, end.u), depth_at(walk.stretch, begin.u));
-    const Float length = hn::Mul(depth, hn::Sqrt(dot(direction, direction)));
-    const Float wanted = hn::Ceil(hn::Mul(length, constant(1.0f / effects_.longest_lit)));
+    Float wanted = one;
+    if (effects_.longest_lit > 0.0f) wanted = count_by_length(walk.stretch, walk.ray, begin, end, effects_.longest_lit);
+    if (effects_.largest_lit > 0.0f)
+      wanted =
+          hn::Max(wanted, count_by_opacity(walk.sum.transmittance, pass_unlit(walk, begin, end), effects_.largest_lit));
     const Float parts = hn::IfThenElse(hn::Gt(walk.stretch.length, constant(0.0f)),
                                        hn::Min(hn::Max(wanted, one), constant(kMostParts)), one);
     Cut at = begin;
@@ -229,18 +203,18 @@ class EffectIntegrator {
     }
   }
 
-  /// Where pieces absorb: sums of what they absorb times where that is, and times its square; changes of colour.
-  struct Emission {
-    Float moment, second, tint, unevenness;
-
-    /// The whole of them, of which `absorbed` is the sum.
-    HWY_INLINE Spread spread(Float absorbed) const {
-      const Float share = hn::Div(constant(1.0f), hn::Max(absorbed, constant(1e-30f)));
-      const Float mean = hn::Mul(moment, share);
-      const Float variance = hn::Sub(hn::Mul(second, share), hn::Mul(mean, mean));
-      return {mean, hn::Max(variance, constant(0.0f)), hn::Min(tint, constant(1.0f)), unevenness};
-    }
-  };
+  /// What comes through from `begin` to `end`.
+  template <class Stretch>
+  HWY_INLINE Float pass_unlit(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
+    const Float zero = constant(0.0f);
+    Accumulated part{zero, zero, zero, walk.sum.transmittance};
+    const Front front = walk.front;
+    const Float depth = walk.depth;
+    integrate_pieces(walk, begin, end, part, nullptr);
+    walk.front = front;
+    walk.depth = depth;
+    return part.transmittance;
+  }
 
   /// Adds linear pieces to `sum`, and says where they absorb, if that is asked for. What one ray is given does not
   /// depend on those beside it.
@@ -279,25 +253,7 @@ class EffectIntegrator {
     const Float before = sum.transmittance;
     const Segments segment = segment_between(walk.stretch, a, b);
     base_.integrate(segment, walk.front, sum);
-    if (emission) {
-      const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
-      const Float absorbed = hn::Sub(before, sum.transmittance);
-      const Mask is_bright = hn::Gt(absorbed, constant(effects_.faint));
-      Spread inside{constant(0.5f), constant(1.0f / 12.0f), constant(0.0f), constant(0.0f)};
-      if (!hn::AllFalse(kFloat, is_bright)) {
-        const Float opacity = hn::Div(absorbed, hn::Max(before, constant(1e-30f)));
-        const Spread found = find_emission(effects_.centroid, segment, opacity);
-        inside = {hn::IfThenElse(is_bright, found.center, inside.center),
-                  hn::IfThenElse(is_bright, found.variance, inside.variance), hn::IfThenElseZero(is_bright, found.tint),
-                  hn::IfThenElseZero(is_bright, found.unevenness)};
-      }
-      const Float place = multiply_add(inside.center, part, a.u), moment = hn::Mul(absorbed, place);
-      const Float variance = hn::Mul(inside.variance, hn::Mul(part, part));
-      emission->moment = hn::Add(emission->moment, moment);
-      emission->second = hn::Add(emission->second, multiply_add(moment, place, hn::Mul(absorbed, variance)));
-      emission->tint = hn::Add(emission->tint, inside.tint);
-      emission->unevenness = hn::Max(emission->unevenness, inside.unevenness);
-    }
+    if (emission) note_emission(effects_, segment, a, b, before, sum.transmittance, *emission);
     note_piece(walk, a, b, before, sum.transmittance);
   }
 
@@ -306,7 +262,7 @@ class EffectIntegrator {
   HWY_INLINE Segments segment_between(const Stretch& stretch, const Cut& a, const Cut& b) const {
     const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
     Segments segment{a.scalar, b.scalar, hn::Mul(stretch.length, part)};
-    if (HWY_UNLIKELY(is_weighted())) weigh(stretch, a, b, segment);
+    if (HWY_UNLIKELY(is_weighted())) weigh(effects_, stretch, a, b, segment);
     return segment;
   }
 
@@ -323,24 +279,6 @@ class EffectIntegrator {
   }
 
   HWY_INLINE bool is_weighted() const { return effects_.weight_by_change > 0.0f || effects_.weight_by_gradient > 0.0f; }
-
-  /// Extinction falls with what changes little: a shorter segment has the same effect.
-  template <class Stretch>
-  HWY_NOINLINE void weigh(const Stretch& stretch, const Cut& a, const Cut& b, Segments& segment) const {
-    const Float one = constant(1.0f);
-    Float weight = one;
-    if (effects_.weight_by_change > 0.0f) {
-      const Float change = hn::Abs(hn::Sub(b.scalar, a.scalar));
-      const Float rate = hn::Div(change, hn::Max(segment.length, constant(1e-30f)));
-      weight = hn::Min(one, hn::Mul(rate, constant(effects_.weight_by_change)));
-    }
-    if (effects_.weight_by_gradient > 0.0f)
-      weight = hn::Mul(weight, hn::Min(one, hn::Mul(magnitude_at(effects_, stretch, middle_of(a, b)),
-                                                    constant(effects_.weight_by_gradient))));
-    segment.length = hn::Mul(segment.length, weight);
-  }
-
-  HWY_INLINE static Float middle_of(const Cut& a, const Cut& b) { return hn::Mul(constant(0.5f), hn::Add(a.u, b.u)); }
 
   // ---- light ----
 
@@ -374,38 +312,12 @@ class EffectIntegrator {
   HWY_NOINLINE void integrate_lit(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
     const Gathered gathered = gather(walk, begin, end);
     if (hn::AllFalse(kFloat, gathered.bright))
-      add_usual(gathered.part, walk.sum);
+      add_in_light(gathered.part, effects_.usual_light, walk.sum);
     else
       light(walk, begin, end, gathered.emission.spread(gathered.absorbed), gathered.bright, gathered.part);
   }
 
-  /// Where light is looked up between two cuts: at two places that, weighted, have mean and variance of the emission,
-  /// so that what is quadratic along the ray is exact. They are one where that serves.
-  struct LitPlaces {
-    Float near, far, far_weight;
-    bool are_one;
-  };
-  HWY_INLINE LitPlaces find_lit_places(const Cut& begin, const Cut& end, const Spread& emission, Mask bright,
-                                       Float absorbed) const {
-    const Float zero = constant(0.0f), tiny = constant(1e-6f);
-    const Float center = hn::Min(hn::Max(emission.center, begin.u), end.u);
-    const Mask apart = hn::And(bright, hn::Gt(absorbed, constant(effects_.lit_once)));
-    if (hn::AllFalse(kFloat, apart)) return {center, center, zero, true};
-    // As far apart as the deviation, on either side; where an end is nearer, the other place is farther.
-    const Float deviation = hn::IfThenElseZero(apart, hn::Sqrt(emission.variance));
-    const Float to_begin = hn::Max(hn::Sub(center, begin.u), tiny), to_end = hn::Max(hn::Sub(end.u, center), tiny);
-    const Float square = hn::Mul(deviation, deviation);
-    const Float before = hn::Min(hn::Max(deviation, hn::Div(square, to_end)), to_begin);
-    const Float after = hn::Min(hn::Max(deviation, hn::Div(square, to_begin)), to_end);
-    const Float weight = hn::Div(before, hn::Max(hn::Add(before, after), tiny));
-    return {hn::Max(hn::Sub(center, before), begin.u), hn::Min(hn::Add(center, after), end.u), weight, false};
-  }
-
-  /// The light at two places of a stretch.
-  struct LitPair {
-    Triple near_gradient, far_gradient;
-    Illumination near, far;
-  };
+  /// The light at the places of a stretch.
   template <class Stretch>
   HWY_INLINE LitPair look_up_light(const Walk<Stretch>& walk, const GradientCourse<Stretch>& gradients,
                                    const LitPlaces& places, Mask bright) const {
@@ -429,38 +341,13 @@ class EffectIntegrator {
                         Mask bright, const Accumulated& part) const {
     const Float one = constant(1.0f), absorbed = hn::Sub(walk.sum.transmittance, part.transmittance);
     const GradientCourse<Stretch> gradients(walk.stretch, effects_.camera_from_gradient);
-    const LitPlaces places = find_lit_places(begin, end, emission, bright, absorbed);
+    const LitPlaces places = find_lit_places(effects_, begin, end, emission, bright, absorbed);
     const LitPair lights = look_up_light(walk, gradients, places, bright);
     if (!places.are_one) {
-      const Float count = hn::IfThenElse(bright, count_lit_parts(lights, emission, absorbed), one);
+      const Float count = hn::IfThenElse(bright, count_lit_parts(effects_, lights, emission, absorbed), one);
       if (!hn::AllTrue(kFloat, hn::Le(count, one))) return integrate_turning(walk, gradients, begin, end, count);
     }
-    add_lit(lights, places.far_weight, bright, part, walk.sum);
-  }
-
-  /// How many parts a stretch is to be lit in that has this light at its two places. Light errs in proportion to the
-  /// fourth power of the angle between the two normals, where emission is uneven to the third, and where the colour
-  /// changes too to the angle itself. That is no more than the change of the gradient over its least length (where it
-  /// is weak, light does without it).
-  HWY_INLINE Float count_lit_parts(const LitPair& lights, const Spread& emission, Float absorbed) const {
-    constexpr float kMostParts = 16.0f;
-    const Float one = constant(1.0f), tiny = constant(1e-30f);
-    const Triple &near = lights.near_gradient, &far = lights.far_gradient;
-    const Triple change{hn::Sub(far.x, near.x), hn::Sub(far.y, near.y), hn::Sub(far.z, near.z)};
-    const Float square = dot(change, change);
-    const Float nearest = hn::Div(hn::Neg(dot(near, change)), hn::Max(square, tiny));
-    // The two places are not the ends: the gradient may be weaker a little beyond them.
-    const Triple least = mix(hn::Min(hn::Max(nearest, constant(-0.5f)), constant(1.5f)), near, far);
-    const Float weakest = hn::Max(hn::Add(dot(least, least), constant(effects_.shading->half_strength)),
-                                  hn::Max(hn::Mul(constant(1e-3f), square), tiny));
-    const Float turned = hn::Div(square, weakest), angle = hn::Sqrt(turned);
-    const LightChange& change_of = effects_.light_change;
-    const Float tinted = hn::Mul(constant(change_of.first), hn::Mul(emission.tint, angle));
-    const Float skewed = hn::Mul(constant(change_of.third), hn::Mul(emission.unevenness, hn::Mul(angle, turned)));
-    const Float bent = hn::Mul(hn::Mul(absorbed, constant(change_of.fourth)), hn::Mul(turned, turned));
-    const Float quadratic = hn::Mul(absorbed, hn::Max(tinted, skewed));
-    const Float wanted = hn::Sqrt(hn::Max(quadratic, hn::Sqrt(bent)));
-    return hn::Min(hn::Max(hn::Ceil(wanted), one), constant(kMostParts));
+    add_lit(effects_, lights, places.far_weight, bright, part, walk.sum);
   }
 
   /// Gathers and lights a stretch in `count` equal parts.
@@ -476,11 +363,11 @@ class EffectIntegrator {
       next = {hn::IfThenElse(last, end.u, next.u), hn::IfThenElse(last, end.scalar, next.scalar)};
       const Gathered gathered = gather(walk, at, next);
       if (hn::AllFalse(kFloat, gathered.bright)) {
-        add_usual(gathered.part, walk.sum);
+        add_in_light(gathered.part, effects_.usual_light, walk.sum);
       } else {
         const Spread emission = gathered.emission.spread(gathered.absorbed);
-        const LitPlaces places = find_lit_places(at, next, emission, gathered.bright, gathered.absorbed);
-        add_lit(look_up_light(walk, gradients, places, gathered.bright), places.far_weight, gathered.bright,
+        const LitPlaces places = find_lit_places(effects_, at, next, emission, gathered.bright, gathered.absorbed);
+        add_lit(effects_, look_up_light(walk, gradients, places, gathered.bright), places.far_weight, gathered.bright,
                 gathered.part, walk.sum);
       }
       if (hn::AllTrue(kFloat, last)) return;
@@ -488,33 +375,9 @@ class EffectIntegrator {
     }
   }
 
-  /// Adds what is too faint for a normal.
-  HWY_INLINE void add_usual(const Accumulated& part, Accumulated& sum) const {
-    const Float usual = constant(effects_.usual_light);
-    sum.red = multiply_add(part.red, usual, sum.red);
-    sum.green = multiply_add(part.green, usual, sum.green);
-    sum.blue = multiply_add(part.blue, usual, sum.blue);
-    sum.transmittance = part.transmittance;
-  }
-
-  /// Adds what has been gathered on a part of a stretch in the mean of the light at its two places.
-  HWY_INLINE void add_lit(const LitPair& lights, Float far_weight, Mask bright, const Accumulated& part,
-                          Accumulated& sum) const {
-    const Float absorbed = hn::Sub(sum.transmittance, part.transmittance), usual = constant(effects_.usual_light);
-    const Triple diffuse = mix(far_weight, lights.near.diffuse, lights.far.diffuse);
-    const Triple specular = mix(far_weight, lights.near.specular, lights.far.specular);
-    const auto lit = [&](Float color, Float by, Float more) {
-      return hn::IfThenElse(bright, multiply_add(absorbed, more, hn::Mul(color, by)), hn::Mul(color, usual));
-    };
-    sum.red = hn::Add(sum.red, lit(part.red, diffuse.x, specular.x));
-    sum.green = hn::Add(sum.green, lit(part.green, diffuse.y, specular.y));
-    sum.blue = hn::Add(sum.blue, lit(part.blue, diffuse.z, specular.z));
-    sum.transmittance = part.transmittance;
-  }
-
   Base base_;
   const Effects& effects_;
-  bool is_light_all_, is_lit_from_eye_;
+  bool is_light_cut_, is_light_all_, is_lit_from_eye_;
 };
 
 }  // namespace HWY_NAMESPACE

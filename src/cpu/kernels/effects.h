@@ -32,6 +32,11 @@ struct LightSource {
   float vector[3] = {};                ///< kDirectional: unit vector towards the light; kPoint: where it is
   float color[3] = {};                 ///< times intensity
   std::span<const ShadowMap> shadows;  ///< none: it reaches everything; of a near light, one for each face of a cube
+  /// Exact shadows instead (src/cpu/shadow_rays.h): the part of the light that reaches a place of the camera frame.
+  float (*trace_ray)(const void* context, const float place[3]) noexcept = nullptr;
+  const void* ray_context = nullptr;
+
+  bool has_shadows() const { return trace_ray != nullptr || !shadows.empty(); }
 };
 
 /// How much of the surroundings is seen from a place, over all directions, and about where: at the points of a lattice.
@@ -64,6 +69,7 @@ struct Shading {
   float half_strength = 0.0f;  ///< square of the gradient magnitude at which shading has half its strength
   bool is_two_sided = true;
   float shadow_bias = 0.0f;  ///< local length by which surfaces are moved towards the light before they are looked up
+  float ray_bias = 0.0f;     ///< the same before a ray is traced
 };
 
 struct SurfaceSheet {
@@ -106,6 +112,7 @@ struct Effects {
   float lit_once = 0.0f;            ///< what a stretch may absorb and be lit in one place
   LightChange light_change;
   float longest_lit = 0.0f;  ///< local length that is lit as its middle is, for shadows; 0: any
+  float largest_lit = 0.0f;  ///< opacity that is lit as its middle is, for exact shadows; 0: any
   float* depth = nullptr;    ///< [height][width] of the picture: see Image::depth; in local lengths from `z_eye`
   const DepthRecord* record = nullptr;
 };

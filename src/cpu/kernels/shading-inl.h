@@ -78,20 +78,35 @@ struct ShadedPlace {
   bool is_surface;  ///< lit in full strength, and moved off itself before shadows are looked up
 };
 
-/// Part of the light of a source that reaches a place.
+/// What rays from a light find that end at places, one by one.
+HWY_NOINLINE inline Float trace_rays(const LightSource& light, const Triple& place, Mask lanes) {
+  HWY_ALIGN float x[kLanes], y[kLanes], z[kLanes], wanted[kLanes], through[kLanes];
+  hn::Store(place.x, kFloat, x);
+  hn::Store(place.y, kFloat, y);
+  hn::Store(place.z, kFloat, z);
+  hn::Store(hn::IfThenElseZero(lanes, constant(1.0f)), kFloat, wanted);
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const float at[3] = {x[i], y[i], z[i]};
+    through[i] = wanted[i] != 0.0f ? light.trace_ray(light.ray_context, at) : 1.0f;
+  }
+  return hn::Load(kFloat, through);
+}
+
+/// Part of the light of a source that reaches a place. `lanes`: where it matters.
 HWY_INLINE Float find_visibility(const Shading& shading, const LightSource& light, const ShadedPlace& place,
-                                 const Triple& normal, const Triple& to_light) {
+                                 const Triple& normal, const Triple& to_light, Mask lanes) {
   Triple from = place.position;
   if (place.is_surface) {
     // Off the surface, to the side that the light comes from.
-    const Float bias = constant(shading.shadow_bias);
+    const Float bias = constant(light.trace_ray ? shading.ray_bias : shading.shadow_bias);
     const Float side = hn::CopySign(bias, dot(normal, to_light));
     from = sum_of(from, sum_of(scaled(normal, side), scaled(to_light, bias)));
   }
+  if (light.trace_ray) return trace_rays(light, from, lanes);
   Float through = constant(1.0f);
   for (const ShadowMap& map : light.shadows) {
     Triple q = transform(map.light_from_camera, 4, from);
-    Mask here = place.lanes;
+    Mask here = lanes;
     if (map.is_perspective) {
       // The face of the cube that the place is seen through.
       const Float reach = hn::Max(hn::Abs(q.x), hn::Abs(q.y));
@@ -121,7 +136,7 @@ HWY_INLINE Float find_openness(const OcclusionMap& map, const Triple& position, 
 /// Whether the light comes from the eye alone, so that `illuminate_from_eye` serves.
 inline bool is_lit_from_eye(const Shading& shading) {
   return shading.lights.size() == 1 && shading.lights[0].kind == LightSource::Kind::kHeadlight &&
-         shading.is_two_sided && !shading.occlusion && !shading.environment && shading.lights[0].shadows.empty();
+         shading.is_two_sided && !shading.occlusion && !shading.environment && !shading.lights[0].has_shadows();
 }
 
 /// `illuminate` for that: normal, view and light meet in one cosine, and nothing need be normalised.
@@ -175,7 +190,10 @@ HWY_NOINLINE inline Illumination illuminate(const Shading& shading, const Shaded
     Float specular = hn::Mul(strength, hn::Mul(constant(shading.specular), shine));
     if (!shading.is_two_sided) specular = hn::IfThenElseZero(hn::Gt(cosine, zero), specular);
     Float reaching = one;
-    if (!source.shadows.empty()) reaching = find_visibility(shading, source, place, normal, to_light);
+    if (source.has_shadows()) {
+      const Mask lit = hn::Or(hn::Gt(diffuse, zero), hn::Gt(specular, zero));
+      reaching = find_visibility(shading, source, place, normal, to_light, hn::And(place.lanes, lit));
+    }
     const Triple color = scaled(constant_triple(source.color), reaching);
     light.diffuse = sum_of(light.diffuse, scaled(color, hn::Mul(constant(shading.diffuse), diffuse)));
     light.specular = sum_of(light.specular, scaled(color, specular));

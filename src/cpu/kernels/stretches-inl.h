@@ -62,6 +62,21 @@ HWY_INLINE Float depth_at(const Stretch& stretch, Float u) {
   return multiply_add(u, hn::Sub(stretch.z_back, stretch.z_front), stretch.z_front);
 }
 
+/// Adds a part of a ray, emission times `light`.
+HWY_INLINE void add_in_light(const Accumulated& part, float light, Accumulated& sum) {
+  sum.red = multiply_add(part.red, constant(light), sum.red);
+  sum.green = multiply_add(part.green, constant(light), sum.green);
+  sum.blue = multiply_add(part.blue, constant(light), sum.blue);
+  sum.transmittance = part.transmittance;
+}
+
+/// Where transmittance passes one half, from 0 where it is `before` to 1 where it is `after`.
+HWY_INLINE Float find_half(Float before, Float after) {
+  const auto log = [](Float x) { return log2_positive(hn::Max(x, constant(1e-30f))); };
+  const Float span = hn::Max(hn::Sub(log(before), log(after)), constant(1e-12f));
+  return hn::Min(hn::Div(hn::Add(log(before), constant(1.0f)), span), constant(1.0f));
+}
+
 /// Camera frame, stored scalars a local length.
 template <class Stretch>
 HWY_INLINE Triple gradient_at(const Effects& effects, const Stretch& stretch, Float u) {
@@ -83,11 +98,26 @@ HWY_INLINE void note_depth(const Stretch& stretch, const Cut& a, const Cut& b, F
   const Mask open = hn::Eq(depth, constant(std::numeric_limits<float>::infinity()));
   const Mask passes = hn::And(open, hn::And(hn::Ge(before, half), hn::Lt(after, half)));
   if (HWY_LIKELY(hn::AllFalse(kFloat, passes))) return;
-  const auto log = [](Float x) { return log2_positive(hn::Max(x, constant(1e-30f))); };
-  const Float span = hn::Max(hn::Sub(log(before), log(after)), constant(1e-12f));
-  const Float t = hn::Min(hn::Div(hn::Add(log(before), constant(1.0f)), span), constant(1.0f));
-  const Float u = multiply_add(t, hn::Sub(b.u, a.u), a.u);
+  const Float u = multiply_add(find_half(before, after), hn::Sub(b.u, a.u), a.u);
   depth = hn::IfThenElse(passes, depth_at(stretch, u), depth);
+}
+
+/// Parts of a stretch that are no longer than `longest`, local length.
+template <class Stretch>
+HWY_INLINE Float count_by_length(const Stretch& stretch, const RayView& ray, const Cut& begin, const Cut& end,
+                                 float longest) {
+  const Triple direction = ray.direction();
+  const Float depth = hn::Sub(depth_at(stretch, end.u), depth_at(stretch, begin.u));
+  const Float length = hn::Mul(depth, hn::Sqrt(dot(direction, direction)));
+  return hn::Ceil(hn::Mul(length, constant(1.0f / longest)));
+}
+
+/// Parts of equal length of which the first, where the ray is brightest, absorbs no more than `largest`; transmittance
+/// goes from `before` to `after` in all. What is darker than a hundredth of the beginning adds nothing to speak of.
+HWY_INLINE Float count_by_opacity(Float before, Float after, float largest) {
+  const Float left = hn::Div(after, hn::Max(before, constant(1e-30f)));
+  const Float optical_depth = hn::Mul(log2_positive(hn::Max(left, constant(0.01f))), constant(-0.69314718f));
+  return hn::Ceil(hn::Mul(hn::Mul(before, optical_depth), constant(1.0f / largest)));
 }
 
 /// Writes down optical depths at the slices between two depths.
@@ -227,6 +257,52 @@ HWY_INLINE Float find_crossing(const Stretch& stretch, const Cut& a, const Cut& 
     }
     return at;
   }
+}
+
+/// Whether a surface is met on a linear segment.
+HWY_INLINE bool meets_surface(const Effects& effects, const Segments& segment) {
+  Mask met = hn::FirstN(kFloat, 0);
+  for (const SurfaceSheet& sheet : effects.surfaces) {
+    const Float value = constant(sheet.value);
+    met = hn::Or(met, hn::Xor(hn::Lt(segment.scalar_front, value), hn::Lt(segment.scalar_back, value)));
+  }
+  return !hn::AllFalse(kFloat, hn::And(met, hn::Gt(segment.length, constant(0.0f))));
+}
+
+/// Whether a surface may be met anywhere between two cuts.
+template <class Stretch>
+HWY_INLINE bool meets_surface(const Effects& effects, const Stretch& stretch, const Cut& begin, const Cut& end) {
+  if (effects.surfaces.empty()) return false;
+  Float low = hn::Min(begin.scalar, end.scalar), high = hn::Max(begin.scalar, end.scalar);
+  if constexpr (!Stretch::kIsLinear) {
+    const Float bend = hn::Mul(constant(1.5f), stretch.bend());
+    low = hn::Sub(low, bend);
+    high = hn::Add(high, bend);
+  }
+  const Mask lanes = hn::Gt(stretch.length, constant(0.0f));
+  Mask met = hn::FirstN(kFloat, 0);
+  for (const SurfaceSheet& sheet : effects.surfaces) {
+    const Float value = constant(sheet.value);
+    met = hn::Or(met, hn::And(hn::Le(low, value), hn::Ge(high, value)));
+  }
+  return !hn::AllFalse(kFloat, hn::And(met, lanes));
+}
+
+/// Extinction falls with what changes little: a shorter segment has the same effect.
+template <class Stretch>
+HWY_NOINLINE void weigh(const Effects& effects, const Stretch& stretch, const Cut& a, const Cut& b, Segments& segment) {
+  const Float one = constant(1.0f);
+  Float weight = one;
+  if (effects.weight_by_change > 0.0f) {
+    const Float change = hn::Abs(hn::Sub(b.scalar, a.scalar));
+    const Float rate = hn::Div(change, hn::Max(segment.length, constant(1e-30f)));
+    weight = hn::Min(one, hn::Mul(rate, constant(effects.weight_by_change)));
+  }
+  if (effects.weight_by_gradient > 0.0f)
+    weight =
+        hn::Mul(weight, hn::Min(one, hn::Mul(magnitude_at(effects, stretch, hn::Mul(constant(0.5f), hn::Add(a.u, b.u))),
+                                             constant(effects.weight_by_gradient))));
+  segment.length = hn::Mul(segment.length, weight);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -65,7 +65,7 @@ Lighting random_lighting(Dice& dice) {
   lighting.gradient = static_cast<GradientMethod>(dice.below(5));
   lighting.gradient_threshold = 100.0 * dice.unit();
   lighting.is_two_sided = dice.coin();
-  lighting.shadows = static_cast<ShadowKind>(dice.below(2));
+  lighting.shadows = static_cast<ShadowKind>(dice.below(3));
   lighting.shadow_resolution = 8 + dice.below(505);
   lighting.ambient_occlusion = dice.below(1025);
   lighting.occlusion_seed = dice.word();
@@ -263,7 +263,7 @@ TEST(EffectRoundTrip, SayWhatIsWrongAboutLighting) {
   expect_bad_lighting(R"("gradient":"sobel")", "lighting.gradient", "central");
   expect_bad_lighting(R"("gradient_threshold":-1)", "gradient threshold", "from 0 up");
   expect_bad_lighting(R"("two_sided":1)", "lighting.two_sided", "true or false");
-  expect_bad_lighting(R"("shadows":"soft")", "lighting.shadows", "none, volume");
+  expect_bad_lighting(R"("shadows":"soft")", "lighting.shadows", "none, volume, exact");
   expect_bad_lighting(R"("shadow_resolution":4)", "lighting.shadow_resolution", "8");
   expect_bad_lighting(R"("ambient_occlusion":2000)", "lighting.ambient_occlusion", "1024");
   expect_bad_lighting(R"("occlusion_seed":-1)", "lighting.occlusion_seed", "whole number");
