@@ -22,7 +22,7 @@ constexpr float kUsualLight = 0.75f;
 constexpr float kBiasInSteps = 1.5f, kLitInSteps = 1.5f;
 
 /// Of the tolerance: by how much the light of one stretch may err. Errors of many stretches hardly add up.
-constexpr double kTurningOfTolerance = 1.0 / 4.0;
+constexpr double kTurningOfTolerance = 1.0 / 3.0;
 /// Of exact shadows: by what local length surfaces are moved off themselves; what opacity may be lit as its middle is,
 /// at the default tolerance and at most (half of that is what the end of a sharp shadow may be off, its square what a
 /// bend of the light may); and how much less than the tolerance need not come through.
@@ -106,7 +106,9 @@ void limit_light_error(const Lighting& lighting, double tolerance, Effects& effe
   for (const Light& light : lighting.lights)
     brightness += light.intensity * std::max({light.color[0], light.color[1], light.color[2]});
   if (lighting.environment) brightness += lighting.environment->intensity;
-  const double diffuse = brightness * lighting.material.diffuse / allowed;
+  // What is open to a side changes with the normal as diffuse light does.
+  const double ambient = lighting.ambient_occlusion > 0 ? lighting.material.ambient : 0.0;
+  const double diffuse = (brightness * lighting.material.diffuse + ambient) / allowed;
   const double specular = brightness * lighting.material.specular / allowed;
   // Near its top cos^N is exp(-N x^2 / 2), whose derivatives are largest at these values.
   const double n = lighting.material.shininess, root = std::sqrt(n);

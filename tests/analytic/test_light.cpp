@@ -202,7 +202,7 @@ TEST_P(Lit, TurningEverythingChangesNothing) {
     return tests::Body(mesh);
   };
   const OpticalFunction function{{{-1.0, 0.2, {0.1, 0.2, 0.9}}, {1.4, 2.7, {0.9, 0.7, 0.2}}}};
-  RenderSettings settings = make_settings(1e-5);
+  RenderSettings settings = make_settings(1e-6);
   settings.lighting = make_lights();
   settings.lighting.gradient_threshold = 0.0;
   settings.surfaces = {{0.3, {0.9, 0.2, 0.1}, {0.1, 0.3, 0.8}, 0.5, true}};

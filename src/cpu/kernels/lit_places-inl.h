@@ -88,7 +88,7 @@ struct LitPair {
 /// is weak, light does without it).
 HWY_INLINE Float count_lit_parts(const Effects& effects, const LitPair& lights, const Spread& emission,
                                  Float absorbed) {
-  constexpr float kMostParts = 16.0f;
+  constexpr float kMostParts = 64.0f;
   const Float one = constant(1.0f), tiny = constant(1e-30f);
   const Triple &near = lights.near_gradient, &far = lights.far_gradient;
   const Triple change{hn::Sub(far.x, near.x), hn::Sub(far.y, near.y), hn::Sub(far.z, near.z)};
