@@ -150,6 +150,25 @@ def grid_scaling_table(rows):
     return table(header, lines)
 
 
+def effects_table(rows):
+    header = ["scene", "what", "frame", "times the plain frame", "tetravox lit is faster by"]
+    lines = []
+    for row in rows:
+        name = row["workload"]
+        if "skipped" in row:
+            lines.append(skipped_row(row, name, len(header)))
+            continue
+        lines.append([name, "plain", seconds(row["plain"]), "1", ""])
+        for variant, own in row["variants"].items():
+            lines.append([name, variant, seconds(own["frame"]), f"{own['ratio']:.2f}", ""])
+        for peer, other in row["peers"].items():
+            if "skipped" in other:
+                lines.append([name, *skipped_row(other, peer, len(header) - 1)])
+            else:
+                lines.append([name, f"VTK {peer}, shaded", seconds(other["frame"]), "", f"{other['ratio']:.1f}×"])
+    return table(header, lines)
+
+
 def startup_table(rows):
     lines = []
     for row in rows:
@@ -182,6 +201,8 @@ def tables(results):
         "**More points.** `builtin:turbulence?size=N`, a byte each, 512². A segment is one ray in one cell, or in a"
         " block of cells that is drawn as one.",
         grid_scaling_table(results["grid_scaling"]),
+        "**Light, surfaces, clipping, several variables.** 512². VTK shades grids alone.",
+        effects_table(results["effects"]),
         "**Start.**",
         startup_table(results["startup"]),
     ]) + "\n"

@@ -12,6 +12,7 @@ import os
 import shutil
 import sys
 
+import effect_workloads
 import grid_workloads
 import peers
 import report
@@ -56,6 +57,7 @@ def main():
             "scaling": workloads.measure_scaling(tool, options),
             "grids": grid_workloads.measure_rendering(tool, display, options),
             "grid_scaling": grid_workloads.measure_scaling(tool, options),
+            "effects": effect_workloads.measure_effects(tool, display, options),
             "startup": workloads.measure_startup(tool, options),
         }
     with open(os.path.join(options.out, "results.json"), "w") as file:

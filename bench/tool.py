@@ -37,6 +37,13 @@ class Tool:
         with open(statistics) as file:
             return json.load(file)
 
+    def info(self, dataset):
+        """What the tool knows of a file."""
+        done = subprocess.run([self.program, "info", dataset, "--json"], capture_output=True, text=True, timeout=600)
+        if done.returncode != 0:
+            raise Failed(done.stderr.strip().split("\n")[-1])
+        return json.loads(done.stdout)
+
     def export(self, dataset, name):
         """Path of an embedded dataset or a file as VTU or VTI, by the ending of `name`."""
         path = self.path(name)

@@ -1,6 +1,6 @@
 """Draws a scene with one of VTK's mappers, frame by frame as told on standard input.
 
-    vtk_peer.py SCENE.json bunyk|pt|fixed|gpu WIDTH HEIGHT
+    vtk_peer.py SCENE.json bunyk|pt|fixed|gpu|fixed:shaded|gpu:shaded WIDTH HEIGHT
 
 Answers each line with one line of JSON:
     frame         draws the scene                     {"seconds": .., "peak_rss": ..}
@@ -36,7 +36,7 @@ def read_dataset(path, array):
     return dataset
 
 
-def make_property(function):
+def make_property(function, is_shaded):
     """Mappers for images take opacities for the unit distance, as scenes mean them. Those for meshes take the opacity
     function's value as an extinction where the unit distance is 1."""
     unit_distance = function.get("unit_distance")
@@ -55,7 +55,11 @@ def make_property(function):
     volume_property.SetScalarOpacity(opacity)
     volume_property.SetScalarOpacityUnitDistance(unit_distance or 1.0)
     volume_property.SetInterpolationTypeToLinear()
-    volume_property.ShadeOff()
+    volume_property.SetShade(is_shaded)
+    volume_property.SetAmbient(0.3)
+    volume_property.SetDiffuse(0.7)
+    volume_property.SetSpecular(0.3)
+    volume_property.SetSpecularPower(32)
     return volume_property
 
 
@@ -100,8 +104,9 @@ class Peer:
         dataset = read_dataset(path, scene["data"].get("array"))
         self.read_seconds = time.perf_counter() - start
         volume = vtk.vtkVolume()
-        volume.SetMapper(make_mapper(mapper, dataset))
-        volume.SetProperty(make_property(scene["transfer_function"]))
+        name, _, shaded = mapper.partition(":")
+        volume.SetMapper(make_mapper(name, dataset))
+        volume.SetProperty(make_property(scene["transfer_function"], bool(shaded)))
         self.size = width, height
         self.window, self.camera = make_window(volume, scene, width, height)
         self.picture = None
