@@ -317,21 +317,13 @@ class EffectIntegrator {
       light(walk, begin, end, gathered.emission.spread(gathered.absorbed), gathered.bright, gathered.part);
   }
 
-  /// The light at the places of a stretch.
+  /// The light at a place of a stretch that has this gradient.
   template <class Stretch>
-  HWY_INLINE LitPair look_up_light(const Walk<Stretch>& walk, const GradientCourse<Stretch>& gradients,
-                                   const LitPlaces& places, Mask bright) const {
+  HWY_INLINE Illumination light_of(const Walk<Stretch>& walk, Float u, const Triple& gradient, Mask bright) const {
     const RayView& ray = walk.ray;
-    const auto light_of = [&](Float u, const Triple& gradient) {
-      if (is_lit_from_eye_) return illuminate_from_eye(*effects_.shading, gradient, ray.direction());
-      const Triple place = ray.position(depth_at(walk.stretch, u));
-      return illuminate(*effects_.shading, {place, gradient, ray.to_eye(), bright, false});
-    };
-    const Triple near_gradient = gradients.at(places.near);
-    const Illumination near = light_of(places.near, near_gradient);
-    if (places.are_one) return {near_gradient, near_gradient, near, near};
-    const Triple far_gradient = gradients.at(places.far);
-    return {near_gradient, far_gradient, near, light_of(places.far, far_gradient)};
+    if (is_lit_from_eye_) return illuminate_from_eye(*effects_.shading, gradient, ray.direction());
+    const Triple place = ray.position(depth_at(walk.stretch, u));
+    return illuminate(*effects_.shading, {place, gradient, ray.to_eye(), bright, false});
   }
 
   /// Adds `part`, what has been gathered between two cuts; or, where normals turn too much for two places, gathers it
@@ -342,12 +334,14 @@ class EffectIntegrator {
     const Float one = constant(1.0f), absorbed = hn::Sub(walk.sum.transmittance, part.transmittance);
     const GradientCourse<Stretch> gradients(walk.stretch, effects_.camera_from_gradient);
     const LitPlaces places = find_lit_places(effects_, begin, end, emission, bright, absorbed);
-    const LitPair lights = look_up_light(walk, gradients, places, bright);
-    if (!places.are_one) {
-      const Float count = hn::IfThenElse(bright, count_lit_parts(effects_, lights, emission, absorbed), one);
-      if (!hn::AllTrue(kFloat, hn::Le(count, one))) return integrate_turning(walk, gradients, begin, end, count);
-    }
-    add_lit(effects_, lights, places.far_weight, bright, part, walk.sum);
+    const Triple near = gradients.at(places.near);
+    if (places.are_one) return add_lit(effects_, light_of(walk, places.near, near, bright), bright, part, walk.sum);
+    const Triple far = gradients.at(places.far);
+    const Float count = hn::IfThenElse(bright, count_lit_parts(effects_, near, far, emission, absorbed), one);
+    if (!hn::AllTrue(kFloat, hn::Le(count, one))) return integrate_turning(walk, gradients, begin, end, count);
+    const Illumination light =
+        mix(places.far_weight, light_of(walk, places.near, near, bright), light_of(walk, places.far, far, bright));
+    add_lit(effects_, light, bright, part, walk.sum);
   }
 
   /// Gathers and lights a stretch in `count` equal parts.
@@ -367,8 +361,10 @@ class EffectIntegrator {
       } else {
         const Spread emission = gathered.emission.spread(gathered.absorbed);
         const LitPlaces places = find_lit_places(effects_, at, next, emission, gathered.bright, gathered.absorbed);
-        add_lit(effects_, look_up_light(walk, gradients, places, gathered.bright), places.far_weight, gathered.bright,
-                gathered.part, walk.sum);
+        Illumination light = light_of(walk, places.near, gradients.at(places.near), gathered.bright);
+        if (!places.are_one)
+          light = mix(places.far_weight, light, light_of(walk, places.far, gradients.at(places.far), gathered.bright));
+        add_lit(effects_, light, gathered.bright, gathered.part, walk.sum);
       }
       if (hn::AllTrue(kFloat, last)) return;
       at = next;

@@ -69,28 +69,27 @@ HWY_INLINE LitPlaces find_lit_places(const Effects& effects, const Cut& begin, c
   // As far apart as the deviation, on either side; where an end is nearer, the other place is farther.
   const Float deviation = hn::IfThenElseZero(apart, hn::Sqrt(emission.variance));
   const Float to_begin = hn::Max(hn::Sub(center, begin.u), tiny), to_end = hn::Max(hn::Sub(end.u, center), tiny);
-  const Float square = hn::Mul(deviation, deviation);
-  const Float before = hn::Min(hn::Max(deviation, hn::Div(square, to_end)), to_begin);
-  const Float after = hn::Min(hn::Max(deviation, hn::Div(square, to_begin)), to_end);
-  const Float weight = hn::Div(before, hn::Max(hn::Add(before, after), tiny));
+  Float before = deviation, after = deviation, weight = constant(0.5f);
+  const Mask is_near_end = hn::Gt(deviation, hn::Min(to_begin, to_end));
+  if (!hn::AllFalse(kFloat, is_near_end)) {
+    const Float square = hn::Mul(deviation, deviation);
+    const Float shorter = hn::Min(hn::Max(deviation, hn::Div(square, to_end)), to_begin);
+    const Float longer = hn::Min(hn::Max(deviation, hn::Div(square, to_begin)), to_end);
+    before = hn::IfThenElse(is_near_end, shorter, deviation);
+    after = hn::IfThenElse(is_near_end, longer, deviation);
+    weight = hn::IfThenElse(is_near_end, hn::Div(before, hn::Max(hn::Add(before, after), tiny)), weight);
+  }
   return {hn::Max(hn::Sub(center, before), begin.u), hn::Min(hn::Add(center, after), end.u), weight, false};
 }
 
-/// The light at two places of a stretch.
-struct LitPair {
-  Triple near_gradient, far_gradient;
-  Illumination near, far;
-};
-
-/// How many parts a stretch is to be lit in that has this light at its two places. Light errs in proportion to the
+/// How many parts a stretch is to be lit in that has these gradients at its two places. Light errs in proportion to the
 /// fourth power of the angle between the two normals, where emission is uneven to the third, and where the colour
 /// changes too to the angle itself. That is no more than the change of the gradient over its least length (where it
 /// is weak, light does without it).
-HWY_INLINE Float count_lit_parts(const Effects& effects, const LitPair& lights, const Spread& emission,
+HWY_INLINE Float count_lit_parts(const Effects& effects, const Triple& near, const Triple& far, const Spread& emission,
                                  Float absorbed) {
   constexpr float kMostParts = 64.0f;
   const Float one = constant(1.0f), tiny = constant(1e-30f);
-  const Triple &near = lights.near_gradient, &far = lights.far_gradient;
   const Triple change{hn::Sub(far.x, near.x), hn::Sub(far.y, near.y), hn::Sub(far.z, near.z)};
   const Float square = dot(change, change);
   const Float nearest = hn::Div(hn::Neg(dot(near, change)), hn::Max(square, tiny));
@@ -108,18 +107,20 @@ HWY_INLINE Float count_lit_parts(const Effects& effects, const LitPair& lights, 
   return hn::Min(hn::Max(hn::Ceil(wanted), one), constant(kMostParts));
 }
 
-/// Adds what has been gathered on a part of a stretch in the mean of the light at its two places.
-HWY_INLINE void add_lit(const Effects& effects, const LitPair& lights, Float far_weight, Mask bright,
-                        const Accumulated& part, Accumulated& sum) {
+HWY_INLINE Illumination mix(Float t, const Illumination& a, const Illumination& b) {
+  return {mix(t, a.diffuse, b.diffuse), mix(t, a.specular, b.specular)};
+}
+
+/// Adds what has been gathered on a part of a stretch in this light.
+HWY_INLINE void add_lit(const Effects& effects, const Illumination& light, Mask bright, const Accumulated& part,
+                        Accumulated& sum) {
   const Float absorbed = hn::Sub(sum.transmittance, part.transmittance), usual = constant(effects.usual_light);
-  const Triple diffuse = mix(far_weight, lights.near.diffuse, lights.far.diffuse);
-  const Triple specular = mix(far_weight, lights.near.specular, lights.far.specular);
   const auto lit = [&](Float color, Float by, Float more) {
     return hn::IfThenElse(bright, multiply_add(absorbed, more, hn::Mul(color, by)), hn::Mul(color, usual));
   };
-  sum.red = hn::Add(sum.red, lit(part.red, diffuse.x, specular.x));
-  sum.green = hn::Add(sum.green, lit(part.green, diffuse.y, specular.y));
-  sum.blue = hn::Add(sum.blue, lit(part.blue, diffuse.z, specular.z));
+  sum.red = hn::Add(sum.red, lit(part.red, light.diffuse.x, light.specular.x));
+  sum.green = hn::Add(sum.green, lit(part.green, light.diffuse.y, light.specular.y));
+  sum.blue = hn::Add(sum.blue, lit(part.blue, light.diffuse.z, light.specular.z));
   sum.transmittance = part.transmittance;
 }
 

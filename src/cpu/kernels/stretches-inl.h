@@ -168,8 +168,10 @@ HWY_INLINE Spread find_extinction(const CentroidView& table, const Segments& seg
   };
   const Float total = difference(before.x, after.x), nodes = hn::ConvertTo(kFloat, hn::Sub(back, front));
   const Mask empty = hn::Or(hn::Eq(total, zero), hn::Eq(nodes, zero));
-  const Float share = hn::Div(one, hn::IfThenElse(empty, one, total));
-  const Float inverse = hn::Div(one, hn::IfThenElse(empty, one, nodes));
+  // One division for both: 1 / total and 1 / nodes.
+  const Float total_or_one = hn::IfThenElse(empty, one, total), nodes_or_one = hn::IfThenElse(empty, one, nodes);
+  const Float both = hn::Div(one, hn::Mul(total_or_one, nodes_or_one));
+  const Float share = hn::Mul(both, nodes_or_one), inverse = hn::Mul(both, total_or_one);
   const Float mean = hn::Mul(hn::Mul(difference(before.y, after.y), share), constant(last));
   const Float square = hn::Mul(hn::Mul(difference(before.z, after.z), share), constant(last * last));
   const Float center = hn::Mul(hn::Sub(mean, hn::ConvertTo(kFloat, front)), inverse);
@@ -192,14 +194,19 @@ HWY_INLINE Spread find_extinction(const CentroidView& table, const Segments& seg
 HWY_INLINE Spread find_emission(const CentroidView& table, const Segments& segment, Float opacity) {
   Spread seen = find_extinction(table, segment);
   const Float one = constant(1.0f), zero = constant(0.0f), twelve = constant(12.0f);
-  const Float through = hn::Max(hn::Sub(one, opacity), constant(1e-6f)), odds = hn::Div(through, hn::Sub(one, through));
-  const Float inverse = hn::Div(one, hn::Mul(log2_positive(through), constant(-0.69314718f)));
-  const Float mean = hn::Sub(inverse, odds);
-  const Float variance = hn::Sub(hn::Mul(inverse, inverse), multiply_add(odds, odds, odds));
   const Mask is_thin = hn::Lt(opacity, constant(0.1f));  // where rounding would show
-  const Float shift = hn::IfThenElse(is_thin, hn::Mul(opacity, constant(1.0f / 12.0f)), hn::Sub(constant(0.5f), mean));
+  Float shift = hn::Mul(opacity, constant(1.0f / 12.0f)), narrowing = one;
+  if (!hn::AllTrue(kFloat, is_thin)) {
+    const Float through = hn::Max(hn::Sub(one, opacity), constant(1e-6f));
+    const Float odds = hn::Div(through, hn::Sub(one, through));
+    const Float inverse = hn::Div(one, hn::Mul(log2_positive(through), constant(-0.69314718f)));
+    const Float mean = hn::Sub(inverse, odds);
+    const Float variance = hn::Sub(hn::Mul(inverse, inverse), multiply_add(odds, odds, odds));
+    shift = hn::IfThenElse(is_thin, shift, hn::Sub(constant(0.5f), mean));
+    narrowing = hn::IfThenElse(is_thin, one, hn::Mul(twelve, hn::Max(variance, zero)));
+  }
   seen.center = hn::Max(hn::Sub(seen.center, hn::Mul(hn::Mul(twelve, seen.variance), shift)), zero);
-  seen.variance = hn::Mul(seen.variance, hn::IfThenElse(is_thin, one, hn::Mul(twelve, hn::Max(variance, zero))));
+  seen.variance = hn::Mul(seen.variance, narrowing);
   // How an uneven one hides itself its moments do not tell: that counts like a change of colour.
   seen.tint = hn::Min(multiply_add(seen.unevenness, opacity, seen.tint), one);
   return seen;
@@ -209,7 +216,7 @@ HWY_INLINE Spread find_emission(const CentroidView& table, const Segments& segme
 template <class Stretch>
 class GradientCourse {
  public:
-  GradientCourse(const Stretch& stretch, const float camera_from_gradient[9])
+  HWY_INLINE GradientCourse(const Stretch& stretch, const float camera_from_gradient[9])
       : stretch_(stretch), camera_from_gradient_(camera_from_gradient) {
     if constexpr (Stretch::kHasLinearGradient) {
       stretch.end_gradients(ends_);
@@ -298,10 +305,15 @@ HWY_NOINLINE void weigh(const Effects& effects, const Stretch& stretch, const Cu
     const Float rate = hn::Div(change, hn::Max(segment.length, constant(1e-30f)));
     weight = hn::Min(one, hn::Mul(rate, constant(effects.weight_by_change)));
   }
-  if (effects.weight_by_gradient > 0.0f)
-    weight =
-        hn::Mul(weight, hn::Min(one, hn::Mul(magnitude_at(effects, stretch, hn::Mul(constant(0.5f), hn::Add(a.u, b.u))),
-                                             constant(effects.weight_by_gradient))));
+  if (effects.weight_by_gradient > 0.0f) {
+    // The mean along the piece, by Simpson's rule.
+    const auto weight_at = [&](Float u) {
+      return hn::Min(one, hn::Mul(magnitude_at(effects, stretch, u), constant(effects.weight_by_gradient)));
+    };
+    const Float middle = weight_at(hn::Mul(constant(0.5f), hn::Add(a.u, b.u)));
+    const Float ends = hn::Add(weight_at(a.u), weight_at(b.u));
+    weight = hn::Mul(weight, hn::Mul(constant(1.0f / 6.0f), multiply_add(constant(4.0f), middle, ends)));
+  }
   segment.length = hn::Mul(segment.length, weight);
 }
 
