@@ -88,6 +88,12 @@ std::string closest_word(const std::string& word, const std::vector<std::string>
       best = candidate;
     }
   }
+  if (!best.empty()) return best;
+  // Or a part of it: --parallel-scale of --camera-parallel-scale.
+  const std::string part = word.substr(std::min(word.find_first_not_of('-'), word.size()));
+  constexpr std::size_t kShortestPart = 4;
+  for (const std::string& candidate : candidates)
+    if (part.size() >= kShortestPart && candidate.find(part) != std::string::npos) return candidate;
   return best;
 }
 

@@ -28,7 +28,7 @@ std::string format_seconds(double seconds);
 std::string single_line(const std::string& text);
 /// Rows of name and description in two columns.
 std::string format_table(const std::vector<std::pair<std::string, std::string>>& rows);
-/// The candidate that is closest to `word` in letters to change, or "" where none is close.
+/// The candidate that is closest to `word` in letters to change, or that has it as a part; "" where none is close.
 std::string closest_word(const std::string& word, const std::vector<std::string>& candidates);
 
 /// Ending of a path in lower case, with its dot.

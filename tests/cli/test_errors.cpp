@@ -58,6 +58,8 @@ TEST_F(Errors, UsageErrorsHelp) {
   expect_error(run({"render"}), 2, {"name what to read"});
   expect_error(run({"render", "builtin:sphere", "--integratr", "post"}), 2,
                {"--integratr", "did you mean --integrator"});
+  expect_error(run({"render", "builtin:sphere", "--parallel-scale", "2"}), 2,
+               {"--parallel-scale", "did you mean --camera-parallel-scale"});
   expect_error(run({"render", "builtin:sphere", "--nonsense=3"}), 2, {"--nonsense"});
   expect_error(run({"render", "builtin:sphere", "second"}), 2, {"second"});
   expect_error(run({"render", "builtin:sphere", "--range"}), 2, {"--range"});
