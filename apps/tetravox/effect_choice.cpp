@@ -95,8 +95,7 @@ std::vector<std::string> check_effects(const EffectOptions& options, const Rende
       options.shadows.value_or(ShadowKind::kNone) != ShadowKind::kNone)
     lines.push_back(
         "--shadows changes nothing: surroundings throw none, and there are no other lights; --ambient-occlusion "
-        "darkens "
-        "hollows");
+        "darkens hollows");
   if (settings.clipping.shapes.size() < 2 && options.use_union)
     lines.push_back("--clip-combine changes nothing: there are no two shapes to combine");
   if (settings.opacity_weight == OpacityWeight::kNone && options.weight_scale)

@@ -45,7 +45,8 @@ std::string explain_transparent(const PictureContext& context) {
   if (context.scene.multidimensional)
     return "the picture is empty: nothing that is opaque by the widgets or the table lies where the data are, or the "
            "camera does not see them (" +
-           format_bounds(bounds_of(context.body)) + "); leave out --widget and --table for a function from the data";
+           format_bounds(bounds_of(context.body)) +
+           "); choose other widgets, another table or wider ranges, or leave them out for a function from the data";
   if (context.statistics.rays == 0)
     return "the picture is empty: the camera does not see the data (" + format_bounds(bounds_of(context.body)) +
            "); leave the camera out for a view of everything";

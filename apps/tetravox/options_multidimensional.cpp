@@ -83,7 +83,8 @@ void add_multidimensional(CLI::App& app, MultidimensionalOptions& options) {
                  });
   add(app, "--table", "FILE", "Colours and opacities as .npy, .png or .exr, in place of widgets",
       store_text(options.table));
-  add(app, "--table-resolution", "N", "Entries an axis that widgets are sampled with (default: 128; of three: 64)",
+  add(app, "--table-resolution", "N",
+      "Entries an axis that widgets are sampled with (default: 128; of three from the data: 64)",
       store(options.resolution, integer(16, 1024)));
 
   app.option_defaults()->group("Colour by another array");

@@ -119,7 +119,7 @@ class Renderer {
   /// its variables of kind kArray, in their order, which of `PreparedMesh::others` or `PreparedGrid::others` it is;
   /// empty: 0, 1, ... A gradient comes from where `Lighting::gradient` says, whether lit or not.
   /// @throws Error (kInvalidArgument) for a table that makes no sense, or others that there are not. Such pictures know
-  /// no post- and pre-classification and no fixed rate: `render` throws kUnsupported.
+  /// no post- and pre-classification, no fixed rate and no exact shadows: `render` throws kUnsupported.
   void set_multidimensional_function(const OpticalTable& table, const std::vector<std::size_t>& others = {});
 
   /// Keeps the opacities of the transfer function set last, and takes the colours from another array: `colors` (its

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace tetravox::cpu {
 namespace {
@@ -24,7 +25,12 @@ DomainAxis make_axis(DomainAxis::Source source, const optics::ScalarMap& map, co
   axis.source = source;
   axis.first = map.stored_from_value(range.min);
   axis.last = static_cast<std::int32_t>(size) - 1;
-  axis.entries_per_scalar = static_cast<float>(axis.last * map.scale / (range.max - range.min));
+  const double density = axis.last * map.scale / (range.max - range.min);
+  if (!(std::abs(axis.first) < 1e30f && density > 1e-30 && density < 1e30))
+    throw Error(ErrorCode::kInvalidArgument, "the range of a variable, " + std::to_string(range.min) + " to " +
+                                                 std::to_string(range.max) +
+                                                 ", is too narrow or too wide beside the data: choose another");
+  axis.entries_per_scalar = static_cast<float>(density);
   return axis;
 }
 
@@ -122,12 +128,13 @@ const Kernels::OfDomain& choose_domain_kernels(const Kernels& kernels, const Dom
 
 void require_domain_settings(const Domain& domain, const RenderSettings& settings) {
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::kUnsupported, message); };
+  const std::string what = domain.is_table() ? "a function of several variables" : "colour from another array";
   if (settings.integrator == Integrator::kPre || settings.integrator == Integrator::kPost)
-    fail("functions of several variables are integrated along each segment: integrator '" +
-         name_of(settings.integrator) + "' does not go with them, leave it out");
+    fail(what + " is integrated along each segment: integrator '" + name_of(settings.integrator) +
+         "' does not go with it, leave it out");
   if (settings.samples_per_voxel > 0.0)
-    fail("functions of several variables follow the cells, not a fixed rate: leave out the samples per voxel");
-  if (domain.is_table() && settings.lighting.shadows == ShadowKind::kExact)
+    fail(what + " follows the cells, not a fixed rate: leave out the samples per voxel");
+  if (domain.is_table() && settings.lighting.shadows == ShadowKind::kExact && !settings.lighting.lights.empty())
     fail("exact shadows follow functions of one variable: choose shadows 'volume'");
 }
 

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kMostSquares = 1024.0;  // along a side
 
+/// Squares that hold a face, in the mean: faces that are long and askew would be in all of them.
+constexpr std::size_t kMostEntries = 16;
+
 /// By what part of a square a face is taken as larger: far more than roundings of projections.
 constexpr double kMargin = 1e-6;
 
@@ -18,54 +21,70 @@ FaceBins::FaceBins(const PreparedMesh& mesh, const Vector3& travel) {
   const ShadowLine line = make_shadow_line({}, travel, 1.0);
   axes_ = line.axes;
   for (std::size_t i = 0; i < 2; ++i) slopes_[i] = line.step[static_cast<std::size_t>(axes_[i])] * line.sign;
-
-  std::vector<std::array<Point, 3>> corners;
-  std::vector<std::uint32_t> entered;
   Point upper{};
+  const std::vector<Projected> faces = project_entered(mesh, upper);
+  if (faces.empty()) return;
+  std::vector<std::size_t> counts;
+  side_ = static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(faces.size())), 1.0, kMostSquares));
+  for (;; side_ /= 2) {
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      squares_per_length_[axis] = static_cast<double>(side_) / std::max(upper[axis] - lower_[axis], 1e-30);
+    if (count_entries(faces, counts) <= kMostEntries * faces.size() || side_ == 1) break;
+  }
+  for (std::size_t i = 1; i < counts.size(); ++i) counts[i] += counts[i - 1];
+  starts_ = counts;
+  faces_.resize(starts_.back());
+  for (const Projected& face : faces)
+    visit_squares(face, [&](std::size_t square) { faces_[counts[square]++] = face.number; });
+}
+
+std::vector<FaceBins::Projected> FaceBins::project_entered(const PreparedMesh& mesh, Point& upper) {
+  std::vector<Projected> faces;
   lower_.fill(std::numeric_limits<double>::infinity());
   upper.fill(-lower_[0]);
   for (std::size_t i = 0; i < mesh.boundary.size(); ++i) {
-    std::array<Point, 3> projected;
+    Projected face{{}, static_cast<std::uint32_t>(i)};
     for (std::size_t k = 0; k < 3; ++k) {
       const Vertex& vertex = mesh.vertices[mesh.boundary[i].vertices[k]];
-      projected[k] = project({vertex.x, vertex.y, vertex.z});
+      face.corners[k] = project({vertex.x, vertex.y, vertex.z});
     }
-    const auto [a, b, c] = projected;
+    const auto& [a, b, c] = face.corners;
     // Clockwise: the light enters. A hair to the other side may be rounding.
     const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     if (area > 1e-14) continue;
-    corners.push_back(projected);
-    entered.push_back(static_cast<std::uint32_t>(i));
-    for (const Point& p : projected)
+    faces.push_back(face);
+    for (const Point& p : face.corners)
       for (std::size_t axis = 0; axis < 2; ++axis) {
         lower_[axis] = std::min(lower_[axis], p[axis]);
         upper[axis] = std::max(upper[axis], p[axis]);
       }
   }
-  if (entered.empty()) return;
-  side_ = static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(entered.size())), 1.0, kMostSquares));
-  for (std::size_t axis = 0; axis < 2; ++axis)
-    squares_per_length_[axis] = static_cast<double>(side_) / std::max(upper[axis] - lower_[axis], 1e-30);
+  return faces;
+}
 
-  const auto visit_squares = [&](const std::array<Point, 3>& face, const auto& visit) {
-    std::array<std::size_t, 2> first{}, last{};
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const auto [low, high] =
-          std::minmax({square_of(face[0], axis), square_of(face[1], axis), square_of(face[2], axis)});
-      const double most = static_cast<double>(side_ - 1);
-      first[axis] = static_cast<std::size_t>(std::clamp(low - kMargin, 0.0, most));
-      last[axis] = static_cast<std::size_t>(std::clamp(high + kMargin, 0.0, most));
-    }
-    for (std::size_t row = first[1]; row <= last[1]; ++row)
-      for (std::size_t column = first[0]; column <= last[0]; ++column) visit(row * side_ + column);
-  };
-  std::vector<std::size_t> counts(side_ * side_ + 1);
-  for (const auto& face : corners) visit_squares(face, [&](std::size_t square) { ++counts[square + 1]; });
-  for (std::size_t i = 1; i < counts.size(); ++i) counts[i] += counts[i - 1];
-  starts_ = counts;
-  faces_.resize(starts_.back());
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    visit_squares(corners[i], [&](std::size_t square) { faces_[counts[square]++] = entered[i]; });
+std::size_t FaceBins::count_entries(std::span<const Projected> faces, std::vector<std::size_t>& counts) const {
+  counts.assign(side_ * side_ + 1, 0);
+  std::size_t total = 0;
+  for (const Projected& face : faces)
+    visit_squares(face, [&](std::size_t square) {
+      ++counts[square + 1];
+      ++total;
+    });
+  return total;
+}
+
+template <class Visit>
+void FaceBins::visit_squares(const Projected& face, const Visit& visit) const {
+  std::array<std::size_t, 2> first{}, last{};
+  const auto& [a, b, c] = face.corners;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto [low, high] = std::minmax({square_of(a, axis), square_of(b, axis), square_of(c, axis)});
+    const double most = static_cast<double>(side_ - 1);
+    first[axis] = static_cast<std::size_t>(std::clamp(low - kMargin, 0.0, most));
+    last[axis] = static_cast<std::size_t>(std::clamp(high + kMargin, 0.0, most));
+  }
+  for (std::size_t row = first[1]; row <= last[1]; ++row)
+    for (std::size_t column = first[0]; column <= last[0]; ++column) visit(row * side_ + column);
 }
 
 FaceBins::Point FaceBins::project(const Vector3& local) const {

@@ -13,8 +13,8 @@
 
 namespace tetravox::cpu {
 
-/// A lattice across the light, about as many squares as faces, each with the faces that light enters there. Views
-/// nothing.
+/// A lattice across the light, about as many squares as faces (fewer where faces are long), each with the faces that
+/// light enters there. Views nothing.
 class FaceBins {
  public:
   FaceBins() = default;
@@ -22,6 +22,8 @@ class FaceBins {
   FaceBins(const PreparedMesh& mesh, const Vector3& travel);
 
   bool is_empty() const { return starts_.empty(); }
+  /// Over all squares: at most 16 for each face.
+  std::size_t entry_count() const { return faces_.size(); }
 
   /// Faces of the mesh that a line of this light through `place` (local) may enter through.
   std::span<const std::uint32_t> faces_at(const Vector3& place) const;
@@ -29,7 +31,18 @@ class FaceBins {
  private:
   using Point = std::array<double, 2>;
 
+  /// A face seen along the light.
+  struct Projected {
+    std::array<Point, 3> corners;
+    std::uint32_t number;
+  };
+
   Point project(const Vector3& local) const;
+  std::vector<Projected> project_entered(const PreparedMesh& mesh, Point& upper);
+  /// How many entries each square has with `side_` squares along each axis, from 1 on; their sum.
+  std::size_t count_entries(std::span<const Projected> faces, std::vector<std::size_t>& counts) const;
+  template <class Visit>
+  void visit_squares(const Projected& face, const Visit& visit) const;
   /// Square along an axis, before it is limited to those that there are.
   double square_of(const Point& at, std::size_t axis) const {
     return (at[axis] - lower_[axis]) * squares_per_length_[axis];

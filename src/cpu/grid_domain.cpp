@@ -89,6 +89,7 @@ void GridDomain::fill(const Filling& filling, BrickLattices& lattices, MarchBric
       const Other& other = others_[i];
       MarchBrick further = lattices.others[i].describe(other.drawn(), filling.frame, filling.brick, 0);
       further.steepness = domain_.axes[other.axis].steepness;
+      further.has_missing |= filling.field.kernel && other.drawn().missing_values > 0;
       most = std::max(most, lattices.others[i].fill(filling.others[i], further, least));
       value.others[other.axis] = further.records ? further.records : further.constants;
     }

@@ -522,6 +522,7 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
     }
   });
   support::throw_if_cancelled(progress);  // the last tile may have been given up
+  if (frame.illustration.rays) frame.illustration.rays->rethrow_failure();
   if (settings.wants_depth) measure_depth(frame.view.camera, frame.view.world_per_local, image);
   statistics.segments = segments;
   statistics.rays = met_rays;

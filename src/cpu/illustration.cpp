@@ -139,6 +139,7 @@ void ShadowCache::prepare(const RenderSettings& settings, const Sources& sources
     Lighting seen;
     seen.lights = lighting.lights;
     seen.shadow_resolution = lighting.shadow_resolution;
+    seen.gradient = lighting.gradient;
     const std::string key = shadow_key(settings, seen, sources);
     if (key != key_) {
       key_.clear();
@@ -149,6 +150,7 @@ void ShadowCache::prepare(const RenderSettings& settings, const Sources& sources
   if (lighting.ambient_occlusion > 0) {
     Lighting seen;
     seen.shadow_resolution = lighting.shadow_resolution;
+    seen.gradient = lighting.gradient;
     seen.ambient_occlusion = lighting.ambient_occlusion;
     seen.occlusion_seed = lighting.occlusion_seed;
     const std::string key = shadow_key(settings, seen, sources);

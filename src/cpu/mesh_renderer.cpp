@@ -326,6 +326,7 @@ void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
     }
   });
   support::throw_if_cancelled(context.progress);  // the last tile may have been given up
+  if (illustration.rays) illustration.rays->rethrow_failure();
   if (settings.wants_depth) measure_depth(frame.camera, mesh_.world_per_local, image);
   statistics.segments = segments;
   statistics.rays = rays;

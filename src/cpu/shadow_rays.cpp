@@ -73,7 +73,12 @@ void ShadowRays::attach(const std::vector<Light>& lighting, std::span<LightSourc
     lights[i].ray_context = &sources_[i];
     lights[i].trace_ray = [](const void* context, const float place[3]) noexcept {
       const auto& source = *static_cast<const Source*>(context);
-      return source.rays->trace(source.number, place);
+      try {
+        return source.rays->trace(source.number, place);
+      } catch (...) {
+        source.rays->note_failure(std::current_exception());
+        return 1.0f;
+      }
     };
   }
 }
@@ -102,6 +107,15 @@ void ShadowRays::find_kept(const ShadowLine& line, double z_light, Scratch& scra
     const double a = (interval.z_near - origin) * line.sign, b = (interval.z_far - origin) * line.sign;
     append_range(scratch.kept, std::max(z_light, std::min(a, b)), std::min(0.0, std::max(a, b)));
   }
+}
+
+void ShadowRays::note_failure(const std::exception_ptr& failure) const {
+  const std::lock_guard lock(failure_mutex_);
+  if (!failure_) failure_ = failure;
+}
+
+void ShadowRays::rethrow_failure() const {
+  if (failure_) std::rethrow_exception(failure_);
 }
 
 float ShadowRays::trace(std::size_t light, const float place[3]) const {

@@ -16,7 +16,9 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <exception>
 #include <limits>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -60,8 +62,10 @@ struct ShadowOptics {
 /// A part of a line along which the scalar is linear.
 struct ShadowPiece {
   optics::ExtinctionIntegral::Mark front, back;
-  double length = 0.0;    ///< world
-  double gradient = 0.0;  ///< magnitude in its middle, stored scalars a local length; for `weight_by_gradient` alone
+  double length = 0.0;  ///< world
+  /// Magnitude in its middle, stored scalars a local length; for `weight_by_gradient` alone. (The picture takes the
+  /// mean of three along its longer pieces.)
+  double gradient = 0.0;
 };
 
 /// Adds what a piece absorbs, surfaces left out.
@@ -125,6 +129,9 @@ class ShadowRays {
   /// Part of the light number `light` that reaches a place of the camera frame, in [0, 1].
   float trace(std::size_t light, const float place[3]) const;
 
+  /// Throws what a ray that kernels asked for has failed with, if any did. After the last tile.
+  void rethrow_failure() const;
+
  private:
   /// A light in the local frame.
   struct Source {
@@ -139,6 +146,7 @@ class ShadowRays {
     std::vector<DepthRange> kept;
   };
 
+  void note_failure(const std::exception_ptr& failure) const;
   Vector3 local_from_camera(const Vector3& seen) const;
   void find_kept(const ShadowLine& line, double z_light, Scratch& scratch) const;
 
@@ -149,6 +157,8 @@ class ShadowRays {
   std::vector<Source> sources_;
   const std::atomic<bool>* cancelled_ = nullptr;
   mutable tbb::enumerable_thread_specific<Scratch> scratches_;
+  mutable std::mutex failure_mutex_;
+  mutable std::exception_ptr failure_;
 };
 
 }  // namespace tetravox::cpu

@@ -145,6 +145,7 @@ LightDepths draw_light(const Camera& camera, int size, const RenderSettings& set
   LightPass pass{camera, settings, {light.depths.data(), size, size, size, light.z_first, light.slices_per_z}};
   pass.settings.width = pass.settings.height = size;
   pass.settings.lighting = {};
+  pass.settings.lighting.gradient = settings.lighting.gradient;  // weights and functions may depend on it
   pass.settings.wants_depth = false;
   pass.settings.use_early_ray_termination = false;
   Image unseen{size, size, std::vector<float>(4 * static_cast<std::size_t>(size) * size)};

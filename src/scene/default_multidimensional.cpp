@@ -146,7 +146,7 @@ std::vector<double> shares_along(const Axis& axis, const std::vector<scene::Diff
 std::vector<Step> make_steps(const Axis& axis, const std::vector<scene::DifferentialSample>& samples,
                              std::size_t count) {
   const std::vector<double> positions = optics::positions(shares_along(axis, samples));
-  const double width = std::max(axis.range.max - axis.range.min, 1e-30);
+  const double width = axis.range.max - axis.range.min;
   const auto value_at = [&](double position) {
     const auto above = std::lower_bound(positions.begin(), positions.end(), position) - positions.begin();
     return axis.range.min + width * std::min(1.0, (static_cast<double>(above) + 0.5) / kBins);
@@ -178,8 +178,10 @@ Layout make_layout(const std::vector<Axis>& axes, const std::vector<scene::Diffe
   layout.color_axis = array < axes.size() ? array : value;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const ValueRange& range = axes[i].range;
-    const double width = std::max(range.max - range.min, 1e-30);
-    if (axes[i].kind == VariableKind::kGradient)
+    const double width = range.max - range.min;
+    if (!(width > 0.0))  // constant: one step, as wide as the axis that the table makes of it
+      layout.steps.push_back({{range.min, 0.5, optics::color_at(0.5, false)}});
+    else if (axes[i].kind == VariableKind::kGradient)
       layout.steps.push_back({{range.max, kGradientRadius * width}});
     else if (i == value || i == array)
       layout.steps.push_back(make_steps(axes[i], samples, count));

@@ -48,8 +48,7 @@ void validate(const Light& light, const std::string& name) {
 
 void validate(const EnvironmentLight& light) {
   if (light.file.empty()) fail("environment, file: expected a name");
-  require_number("environment, intensity", light.intensity, 0.0, HUGE_VAL);
-  if (!std::isfinite(light.intensity)) fail("environment, intensity: expected a finite number");
+  require_number("environment, intensity", light.intensity, 0.0, 1e6);
   if (!std::isfinite(light.rotation)) fail("environment, rotation: expected a finite number of degrees");
   require_direction("environment, up", light.up);
 }

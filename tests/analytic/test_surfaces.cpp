@@ -4,6 +4,7 @@
 #include "tests/analytic/light_model.h"
 #include "tests/analytic/show.h"
 #include "tests/common/grid_builder.h"
+#include "tests/common/image_compare.h"
 #include "tests/common/mesh_builder.h"
 #include "tetravox/error.h"
 
@@ -336,6 +337,30 @@ TEST_P(Surfaces, CellDataHaveNone) {
   RenderSettings settings = make_settings(9, 9);
   settings.surfaces = {{}};
   EXPECT_THROW(body.draw(kNothing, standard_cameras()[0].second, settings), Error);
+}
+
+TEST(SurfacesBesideMissingValues, AreNumbersWithEveryFilter) {
+  tests::GridOptions options;
+  const double missing = std::numeric_limits<double>::quiet_NaN();
+  const tests::Body body =
+      tests::make_grid(options, [&](const Vector3& p) { return p[0] + 0.3 * p[1] > 0.1 ? missing : norm(p); });
+  const OpticalFunction function{{{0.0, 0.5, {0.9, 0.5, 0.2}}, {2.0, 2.0, {0.2, 0.5, 0.9}}}};
+  for (const FilterKind filter : {FilterKind::kLinear, FilterKind::kBspline, FilterKind::kCatmullRom})
+    for (const OpacityWeight weight : {OpacityWeight::kNone, OpacityWeight::kGradient})
+      for (const bool is_lit : {false, true}) {
+        RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 41, 31);
+        settings.filter.kind = filter;
+        settings.opacity_weight = weight;
+        settings.lighting.gradient = GradientMethod::kFilter;
+        if (is_lit) settings.lighting.lights = {Light{}, {LightKind::kDirectional, {1, 2, -1}, {}, {1, 1, 1}, 0.5}};
+        settings.surfaces = {{0.8, {0.9, 0.3, 0.2}, {0.3, 0.3, 0.8}, 0.6, true}};
+        for (const auto& [name, camera] : standard_cameras()) {
+          const Image image = body.draw(function, camera, settings);
+          EXPECT_TRUE(std::all_of(image.pixels.begin(), image.pixels.end(), [](float x) { return std::isfinite(x); }))
+              << name << " " << name_of(settings.filter) << " " << name_of(weight) << " " << is_lit;
+          EXPECT_GT(tests::count_covered(image), 100u) << name;
+        }
+      }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Surfaces, ::testing::Bool(),

@@ -8,8 +8,7 @@
 // - static constexpr bool kIsLinear, and where it is not: void find_extrema(Float extrema[2]), Float bend(),
 // - Float slope(Float u), Float count_pieces(from, to, transmittance): linear pieces that the tolerance asks for;
 // - for functions of several variables: Float other(int axis, Float u), the scalar of another array, and where it is
-// not
-//   linear: Float other_bend(int axis).
+//   not linear: Float other_bend(int axis).
 
 #if defined(TETRAVOX_CPU_STRETCHES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETRAVOX_CPU_STRETCHES_INL
@@ -77,10 +76,18 @@ HWY_INLINE Float find_half(Float before, Float after) {
   return hn::Min(hn::Div(hn::Add(log(before), constant(1.0f)), span), constant(1.0f));
 }
 
+/// Beside missing values a gradient may be no number: then there is none.
+HWY_INLINE Triple numbers_of(const Triple& gradient) {
+  const Float sum = hn::Add(hn::Add(gradient.x, gradient.y), gradient.z);
+  const Mask is_number = hn::Eq(sum, sum);
+  return {hn::IfThenElseZero(is_number, gradient.x), hn::IfThenElseZero(is_number, gradient.y),
+          hn::IfThenElseZero(is_number, gradient.z)};
+}
+
 /// Camera frame, stored scalars a local length.
 template <class Stretch>
 HWY_INLINE Triple gradient_at(const Effects& effects, const Stretch& stretch, Float u) {
-  return transform(effects.camera_from_gradient, 3, stretch.gradient(u));
+  return numbers_of(transform(effects.camera_from_gradient, 3, stretch.gradient(u)));
 }
 
 template <class Stretch>
@@ -228,7 +235,7 @@ class GradientCourse {
     if constexpr (Stretch::kHasLinearGradient)
       return mix(u, ends_[0], ends_[1]);
     else
-      return transform(camera_from_gradient_, 3, stretch_.gradient(u));
+      return numbers_of(transform(camera_from_gradient_, 3, stretch_.gradient(u)));
   }
 
  private:
@@ -314,7 +321,8 @@ HWY_NOINLINE void weigh(const Effects& effects, const Stretch& stretch, const Cu
     const Float ends = hn::Add(weight_at(a.u), weight_at(b.u));
     weight = hn::Mul(weight, hn::Mul(constant(1.0f / 6.0f), multiply_add(constant(4.0f), middle, ends)));
   }
-  segment.length = hn::Mul(segment.length, weight);
+  // Where a ray takes no part a gradient may be no number.
+  segment.length = hn::IfThenElseZero(hn::Gt(segment.length, constant(0.0f)), hn::Mul(segment.length, weight));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -252,5 +252,15 @@ TEST(DefaultFunction, ColorsFollowTheOtherArray) {
   EXPECT_EQ(of_three.widgets.size(), 64u);
 }
 
+TEST(DefaultFunction, ShowsConstantArrays) {
+  tests::GridOptions options;
+  const PreparedGrid grid = prepare_grid(tests::make_grid(options, [](const Vector3&) { return 5.0; }));
+  const std::vector<Variable> variables{{}, {VariableKind::kGradient, {}, {}}};
+  const MultidimensionalFunction function = make_default_multidimensional(grid, variables);
+  EXPECT_NO_THROW(validate_multidimensional(function));
+  const OpticalTable table = make_optical_table(function, make_variable_ranges(grid, variables), 1.0);
+  EXPECT_GT(eval_optical_table(table, std::vector<double>{5.0, 0.0}).extinction, 0.0);
+}
+
 }  // namespace
 }  // namespace tetravox
