@@ -118,7 +118,7 @@ void override_multidimensional(const MultidimensionalOptions& options, const Fun
   try {
     validate_multidimensional(*scene.multidimensional);
   } catch (const Error& error) {
-    throw UsageError("--variables: " + std::string(error.what()));
+    throw UsageError(error.what());
   }
 }
 

@@ -1,7 +1,6 @@
 #include "src/scene/scene_effects.h"
 
 #include "src/scene/scene_multidimensional.h"
-
 #include "tetravox/error.h"
 
 #include <cstddef>
@@ -58,13 +57,6 @@ void read_material(const JsonPlace& place, Material& material) {
   read_number(place, "diffuse", material.diffuse);
   read_number(place, "specular", material.specular);
   read_number(place, "shininess", material.shininess);
-}
-
-/// The name of a file that the scene draws with.
-std::string read_file_name(const JsonPlace& place) {
-  const std::string file = place.string();
-  if (file.empty() || file.find('\0') != std::string::npos) place.fail("not a file name");
-  return file;
 }
 
 EnvironmentLight read_environment_light(const JsonPlace& place) {

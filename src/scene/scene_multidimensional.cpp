@@ -15,7 +15,7 @@ using optics::JsonPlace;
 using Json = nlohmann::ordered_json;
 
 constexpr int kLargestComponent = 1'000'000;
-constexpr long long kLargestTableResolution = 1024;
+constexpr long long kLeastTableResolution = 16, kLargestTableResolution = 1024;
 constexpr std::size_t kMostWidgets = 1000;
 
 Variable read_variable(const JsonPlace& place) {
@@ -24,7 +24,7 @@ Variable read_variable(const JsonPlace& place) {
   variable.kind = at_place(kind, [&] { return variable_kind_from_name(kind.string()); });
   if (variable.kind == VariableKind::kArray) {
     place.require_keys({"kind", "array", "association", "component", "range"});
-    place.at("array");
+    if (place.at("array").string().empty()) place.at("array").fail("expected the name of an array");
     variable.array = read_array_request(place);
   } else {
     place.require_keys({"kind", "range"});
@@ -114,7 +114,7 @@ MultidimensionalFunction read_multidimensional(const JsonPlace& place) {
   for (std::size_t i = 0; widgets && i < widgets->size(); ++i)
     function.widgets.push_back(read_widget(widgets->at(i), variables.size()));
   if (const auto resolution = place.find("resolution"))
-    function.resolution = static_cast<int>(resolution->integer(1, kLargestTableResolution));
+    function.resolution = static_cast<int>(resolution->integer(kLeastTableResolution, kLargestTableResolution));
   if (const auto distance = place.find("unit_distance")) function.unit_distance = distance->number();
   at_place(place, [&] { validate_multidimensional(function); });
   return function;
