@@ -90,6 +90,24 @@ TEST_P(TurningLight, KeepsThePicturesTolerance) {
   }
 }
 
+TEST_P(TurningLight, GivesTheSameBytesWithEveryInstructionSet) {
+  // Rays side by side are cut into different numbers of parts.
+  const Drawn drawn = make();
+  const double diagonal = tests::diagonal_of(drawn.body.bounds());
+  RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 67, 51);
+  settings.lighting = make_lighting();
+  const auto camera = standard_cameras()[GetParam().seed % 2].second;
+  for (const tests::NamedFunction& named : tests::make_hard_functions(drawn.body.scalar_range(), diagonal)) {
+    settings.instruction_set.clear();
+    const Image image = drawn.body.draw(named.function, camera, settings);
+    for (const std::string& set : instruction_sets()) {
+      settings.instruction_set = set;
+      EXPECT_TRUE(tests::images_equal(drawn.body.draw(named.function, camera, settings), image))
+          << named.name << " " << set;
+    }
+  }
+}
+
 std::string name_turning(const ::testing::TestParamInfo<Turning>& info) {
   return std::string(info.param.is_grid ? "Grid" : "Mesh") + std::to_string(info.param.seed) +
          (info.param.has_many_lights ? "Many" : "Head") + (info.param.threshold > 1.0 ? "Usual" : "Sharp");

@@ -64,10 +64,12 @@ class EffectIntegrator {
       const auto stretch = make_stretch();
       const RayView ray = make_ray();
       Float unused = constant(0.0f);
-      const Float opacity = hn::Div(absorbed, hn::Max(sum.transmittance, constant(1e-30f)));
       const Walk<std::remove_const_t<decltype(stretch)>> walk{stretch, ray, front, sum, unused};
-      light(walk, {constant(0.0f), segment.scalar_front}, {constant(1.0f), segment.scalar_back},
-            find_emission(effects_.centroid, segment, opacity), bright, part);
+      const Cut begin{zero, segment.scalar_front}, end{constant(1.0f), segment.scalar_back};
+      // To the bit what `gather` finds: a ray must not depend on those beside it, which may be cut.
+      Emission emission{zero, zero, zero, zero};
+      note_emission(effects_, segment, begin, end, sum.transmittance, part.transmittance, emission);
+      light(walk, begin, end, emission.spread(absorbed), bright, part);
     }
   }
 
