@@ -118,7 +118,8 @@ void override_multidimensional(const MultidimensionalOptions& options, const Fun
   try {
     validate_multidimensional(*scene.multidimensional);
   } catch (const Error& error) {
-    throw UsageError(error.what());
+    const std::string what = error.what();
+    throw UsageError((what.starts_with("widget") ? "--widget: " : "--variables: ") + what);
   }
 }
 

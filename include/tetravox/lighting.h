@@ -58,7 +58,7 @@ enum class ShadowKind {
 /// occlusion darkens its diffuse part.
 struct EnvironmentLight {
   std::string file;        ///< as `read_environment` takes it, or "builtin:NAME"; the renderer is handed what it holds
-  double intensity = 1.0;  ///< >= 0
+  double intensity = 1.0;  ///< in [0, 1e6]
   double rotation = 0.0;   ///< degrees about `up`, counter-clockwise as seen from above; see `environment_axes`
   Vector3 up{0, 0, 1};     ///< world direction of the picture's upper edge; any length but 0
 };

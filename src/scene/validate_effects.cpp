@@ -20,7 +20,7 @@ bool is_finite(const Vector3& v) { return std::isfinite(v[0]) && std::isfinite(v
 void require_number(const std::string& name, double value, double least, double most) {
   if (value >= least && value <= most) return;
   const auto text = [](double bound) { return std::to_string(static_cast<long long>(bound)); };
-  const bool is_bounded = most < 1e6;
+  const bool is_bounded = most <= 1e6;
   fail(name + ": expected a number from " + text(least) + (is_bounded ? " to " + text(most) : " up"));
 }
 

@@ -60,7 +60,7 @@ Lighting random_lighting(Dice& dice) {
     light.intensity = dice.above_zero();
     lighting.lights.push_back(light);
   }
-  if (dice.coin()) lighting.environment = {"sky/*.exr", dice.above_zero(), dice.number(), dice.vector()};
+  if (dice.coin()) lighting.environment = {"sky/*.exr", 1e6 * dice.unit(), dice.number(), dice.vector()};
   lighting.material = {dice.unit(), dice.unit(), dice.unit(), 1.0 + 999.0 * dice.unit()};
   lighting.gradient = static_cast<GradientMethod>(dice.below(5));
   lighting.gradient_threshold = 100.0 * dice.unit();
@@ -256,7 +256,7 @@ TEST(EffectRoundTrip, SayWhatIsWrongAboutLighting) {
   expect_bad_lighting(R"("environment":{})", "lighting.environment", "'file'");
   expect_bad_lighting(R"("environment":{"file":""})", "lighting.environment.file", "file name");
   expect_bad_lighting(R"("environment":{"file":"a.exr","turn":1})", "lighting.environment", "'turn'");
-  expect_bad_lighting(R"("environment":{"file":"a.exr","intensity":-1})", "environment, intensity", "from 0 up");
+  expect_bad_lighting(R"("environment":{"file":"a.exr","intensity":-1})", "environment, intensity", "from 0 to 1000000");
   expect_bad_lighting(R"("environment":{"file":"a.exr","up":[0,0,0]})", "environment, up", "not all 0");
   expect_bad_lighting(R"("material":{"shiny":1})", "lighting.material", "'shiny'");
   expect_bad_lighting(R"("material":{"ambient":2})", "material, ambient", "from 0 to 1");
