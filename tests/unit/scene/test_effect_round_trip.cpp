@@ -256,7 +256,8 @@ TEST(EffectRoundTrip, SayWhatIsWrongAboutLighting) {
   expect_bad_lighting(R"("environment":{})", "lighting.environment", "'file'");
   expect_bad_lighting(R"("environment":{"file":""})", "lighting.environment.file", "file name");
   expect_bad_lighting(R"("environment":{"file":"a.exr","turn":1})", "lighting.environment", "'turn'");
-  expect_bad_lighting(R"("environment":{"file":"a.exr","intensity":-1})", "environment, intensity", "from 0 to 1000000");
+  expect_bad_lighting(R"("environment":{"file":"a.exr","intensity":-1})", "environment, intensity",
+                      "from 0 to 1000000");
   expect_bad_lighting(R"("environment":{"file":"a.exr","up":[0,0,0]})", "environment, up", "not all 0");
   expect_bad_lighting(R"("material":{"shiny":1})", "lighting.material", "'shiny'");
   expect_bad_lighting(R"("material":{"ambient":2})", "material, ambient", "from 0 to 1");
