@@ -160,8 +160,6 @@ class EffectIntegrator {
       color = {multiply_add(color.x, light.diffuse.x, light.specular.x),
                multiply_add(color.y, light.diffuse.y, light.specular.y),
                multiply_add(color.z, light.diffuse.z, light.specular.z)};
-      // A ray that meets nothing may have been lit with no numbers.
-      for (Float* part : {&color.x, &color.y, &color.z}) *part = hn::IfThenElseZero(seen, *part);
     }
     const Float covered = hn::IfThenElseZero(seen, hn::Mul(sum.transmittance, opacity));
     sum.red = multiply_add(covered, color.x, sum.red);

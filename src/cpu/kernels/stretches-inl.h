@@ -321,8 +321,7 @@ HWY_NOINLINE void weigh(const Effects& effects, const Stretch& stretch, const Cu
     const Float ends = hn::Add(weight_at(a.u), weight_at(b.u));
     weight = hn::Mul(weight, hn::Mul(constant(1.0f / 6.0f), multiply_add(constant(4.0f), middle, ends)));
   }
-  // Where a ray takes no part a gradient may be no number.
-  segment.length = hn::IfThenElseZero(hn::Gt(segment.length, constant(0.0f)), hn::Mul(segment.length, weight));
+  segment.length = hn::Mul(segment.length, weight);
 }
 
 }  // namespace HWY_NAMESPACE
