@@ -1,6 +1,7 @@
 /// Light, surfaces and clipping go into scene files and come back, whatever their numbers.
 
 #include "tests/unit/optics/expect_error.h"
+#include "tests/unit/scene/scene_text.h"
 #include "tetravox/scene.h"
 
 #include <gtest/gtest.h>
@@ -18,16 +19,9 @@
 namespace tetravox {
 namespace {
 
+using testing::expect_bad;
 using testing::expect_error;
-
-const std::string kHead = R"({"tetravox":1,"data":{"file":"a.vtu"},)";
-
-Scene parse(const std::string& members) { return parse_scene(kHead + members + "}", "scene.json"); }
-
-void expect_bad(const std::string& members, const char* where, const char* what) {
-  expect_error(
-      ErrorCode::kBadFile, [&] { parse(members); }, "scene.json", where, what);
-}
+using testing::parse;
 
 /// Numbers of any size, that no rounding on the way would leave as they are.
 class Dice {

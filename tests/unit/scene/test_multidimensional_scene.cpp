@@ -3,6 +3,7 @@
 #include "tests/common/grid_builder.h"
 #include "tests/common/mesh_builder.h"
 #include "tests/unit/optics/expect_error.h"
+#include "tests/unit/scene/scene_text.h"
 #include "tetravox/analysis.h"
 #include "tetravox/scene.h"
 
@@ -18,16 +19,9 @@
 namespace tetravox {
 namespace {
 
+using testing::expect_bad;
 using testing::expect_error;
-
-const std::string kHead = R"({"tetravox":1,"data":{"file":"a.vtu"},)";
-
-Scene parse(const std::string& members) { return parse_scene(kHead + members + "}", "scene.json"); }
-
-void expect_bad(const std::string& members, const char* where, const char* what) {
-  expect_error(
-      ErrorCode::kBadFile, [&] { parse(members); }, "scene.json", where, what);
-}
+using testing::parse;
 
 class Dice {
  public:
