@@ -23,7 +23,12 @@ build libpugixml-dev        reader of PVD collections (XML)
 build libpng-dev            PNG pictures
 build libopenexr-dev        EXR pictures
 build libtiff-dev           reader of TIFF stacks
+build libepoxy-dev         OpenGL
+build libegl-dev           OpenGL without a window (EGL)
+build libegl1              the same, at run time
+build libgl1-mesa-dri      OpenGL without graphics hardware (llvmpipe)
 build zlib1g-dev            compressed NRRD, MetaImage and NIfTI
+test  glslang-tools        check of the shaders
 test  libgtest-dev          unit tests (GoogleTest)
 test  libhdf5-dev           VTKHDF files made by the tests (HDF5)
 test  clang-14              fuzz tests (libFuzzer)

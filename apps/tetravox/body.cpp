@@ -72,10 +72,6 @@ CompletedScene complete_scene(const Scene& scene, const Body& body) {
   return std::visit([&](const auto& prepared) { return tetravox::complete_scene(scene, prepared); }, body);
 }
 
-Renderer make_renderer(const Body& body) {
-  return std::visit([](const auto& prepared) { return Renderer(prepared); }, body);
-}
-
 ReadArray array_of(const Dataset& dataset) {
   const auto read = [](const auto& data) { return ReadArray{data.array_name, data.association, data.component}; };
   return dataset.is_grid() ? read(dataset.grid) : read(dataset.mesh);

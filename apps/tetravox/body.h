@@ -29,7 +29,6 @@ ValueRange other_range_of(const Body& body, std::size_t other);
 std::array<ValueRange, 3> bounds_of(const Body& body);
 Histogram make_histogram(const Body& body, int bins);
 CompletedScene complete_scene(const Scene& scene, const Body& body);
-Renderer make_renderer(const Body& body);
 
 /// The array that was read, and where it has its values.
 struct ReadArray {

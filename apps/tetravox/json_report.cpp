@@ -111,7 +111,8 @@ std::string format_statistics(const PictureStatistics& statistics) {
   bytes["reader_peak_rss"] = peak_resident_memory(RUSAGE_CHILDREN);
   json["threads"] = statistics.render.threads;
   json["isa"] = statistics.render.instruction_set;
-  json["backend"] = "cpu";
+  json["backend"] = statistics.render.backend;
+  if (!statistics.render.device.empty()) json["device"] = statistics.render.device;
   json["kind"] = grid ? "grid" : "mesh";
   if (grid) json["dimensions"] = grid->dimensions;
   json["source"] = name_of(statistics.settings.source.value_or(grid ? Source::kMarch : Source::kWalk));

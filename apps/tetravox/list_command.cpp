@@ -1,3 +1,4 @@
+#include "apps/tetravox/backend.h"
 #include "apps/tetravox/commands.h"
 #include "apps/tetravox/method_choice.h"
 #include "apps/tetravox/text.h"
@@ -58,6 +59,9 @@ void run_list(const ListOptions& options) {
       break;
     case ListOptions::Topic::kEnvironments:
       std::cout << with_title("Embedded surroundings for --environment:", builtin_rows(builtin_environment_names()));
+      break;
+    case ListOptions::Topic::kDevices:
+      std::cout << with_title("Devices for --backend gl (--gl-device):", device_names());
       break;
     case ListOptions::Topic::kMethods:
       std::cout << with_title("Sources (--source):", source_names())

@@ -21,6 +21,7 @@ namespace tetravox::tool {
 namespace {
 
 constexpr int kLargestThreadCount = 4096;
+constexpr int kMostDevices = 31;
 constexpr int kLargestRepeat = 1'000'000;
 constexpr int kLargestSampleCount = 4096;
 
@@ -149,15 +150,17 @@ void add_picture(CLI::App& app, RenderOptions& options) {
   app.add_flag("--verbose", options.is_verbose, "Say how long each step takes");
 }
 
-void parse_backend(const std::string& option, const std::string& text) {
-  if (parse_choice(option, text, {"cpu", "gl"}) == 1)
-    throw UsageError(option + ": this version has no OpenGL backend yet: leave the option out, or use cpu");
+bool parse_backend(const std::string& option, const std::string& text) {
+  return parse_choice(option, text, {"cpu", "gl"}) == 1;
 }
 
 void add_method(CLI::App& app, RenderOptions& options) {
   MethodOptions& method = options.method;
   app.option_defaults()->group("Method");
-  add(app, "--backend", "cpu", "What draws", parse_backend);
+  add(app, "--backend", "cpu|gl", "What draws: vector code on all cores (default), or OpenGL",
+      store(method.use_gl, parse_backend));
+  add(app, "--gl-device", "N", "Device that draws (tetravox list devices; default: the first that is no software)",
+      store(method.gl_device, integer(0, kMostDevices)));
   add(app, "--source", "NAME", "Where segments come from (tetravox list methods)",
       store(method.source, named(source_from_name)));
   add(app, "--integrator", "NAME", "What turns a segment into colour (tetravox list methods)",
@@ -195,7 +198,7 @@ void add_method(CLI::App& app, RenderOptions& options) {
 
 ListOptions::Topic topic_from_name(const std::string& text) {
   return static_cast<ListOptions::Topic>(
-      parse_choice("list", text, {"presets", "readers", "builtins", "methods", "environments"}));
+      parse_choice("list", text, {"presets", "readers", "builtins", "methods", "environments", "devices"}));
 }
 
 /// Usage lines in the order in which people type.
@@ -272,8 +275,8 @@ Parser::Parser() {
   add_raw_layout(*histogram, histogram_options.input);
   add_histogram(*histogram, histogram_options);
 
-  list = add_command(app, "list", "List presets, readers, builtins, methods or environments");
-  list->add_option("TOPIC", topic, "presets, readers, builtins, methods or environments")->type_name("");
+  list = add_command(app, "list", "List presets, readers, builtins, methods, environments or devices");
+  list->add_option("TOPIC", topic, "presets, readers, builtins, methods, environments or devices")->type_name("");
 }
 
 /// The first argument that nothing wanted, with the option that was probably meant.

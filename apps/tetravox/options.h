@@ -72,6 +72,8 @@ enum class Classification {
 };
 
 struct MethodOptions {
+  bool use_gl = false;
+  std::optional<int> gl_device;
   std::optional<Source> source;
   std::optional<Classification> classification;
   std::optional<Integrator> integrator;
@@ -159,7 +161,7 @@ struct HistogramCommandOptions {
 };
 
 struct ListOptions {
-  enum class Topic { kPresets, kReaders, kBuiltins, kMethods, kEnvironments };
+  enum class Topic { kPresets, kReaders, kBuiltins, kMethods, kEnvironments, kDevices };
   Topic topic = Topic::kPresets;
 };
 

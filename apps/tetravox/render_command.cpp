@@ -1,3 +1,4 @@
+#include "apps/tetravox/backend.h"
 #include "apps/tetravox/body.h"
 #include "apps/tetravox/commands.h"
 #include "apps/tetravox/effect_choice.h"
@@ -190,7 +191,7 @@ void complete_job(const RenderOptions& options, Job& job) {
 }
 
 Image draw(const RenderOptions& options, Job& job, Talk& talk) {
-  Renderer renderer = make_renderer(job.body);
+  Renderer renderer = make_renderer(job.body, options.method);
   job.parts.attach(renderer);
   Stopwatch watch;
   renderer.set_transfer_function(job.completed.optical_function);
@@ -212,8 +213,7 @@ Image draw(const RenderOptions& options, Job& job, Talk& talk) {
   job.statistics.settings = settings;
   talk.detail("drew " + format_count(job.statistics.render.segments) + " segments in " +
               format_seconds(median_frame_seconds(job.statistics)) + " a frame, " +
-              job.statistics.render.instruction_set + ", " + std::to_string(job.statistics.render.threads) +
-              " threads");
+              describe_backend(job.statistics.render));
   return image;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Prepared mesh or grid + optical function + camera -> picture, on the CPU.
+/// Prepared mesh or grid + optical function + camera -> picture: on the CPU, or by OpenGL (gl.h).
 ///
 /// The one-call function is `render`. `Renderer` keeps what can be kept between frames.
 
@@ -79,8 +79,10 @@ struct RenderStatistics {
   std::uint64_t rays = 0;          ///< rays that met the data
   std::uint64_t stopped_rays = 0;  ///< rays stopped by the bound on steps (damaged meshes only)
   int threads = 0;
-  std::string instruction_set;
-  std::string integrator;  ///< name of the one that drew; "domain" for functions of several variables
+  std::string backend;          ///< "cpu" or "gl"
+  std::string device;           ///< gl: what OpenGL calls its renderer
+  std::string instruction_set;  ///< cpu
+  std::string integrator;       ///< name of the one that drew; "domain" for functions of several variables
 };
 
 /// Names of enumerators as on the command line and in scene files ("walk", "march"; "antiderivative", "partial",
@@ -100,12 +102,18 @@ std::vector<std::pair<std::string, std::string>> opacity_weight_names();
 /// The instruction sets compiled in and supported by this machine, best first.
 std::vector<std::string> instruction_sets();
 
+namespace scene {
+class FrameRenderer;
+}
+
 /// Draws one mesh or grid many times. Views it: it must outlive the renderer. Not safe for concurrent calls; use one
 /// for each thread.
 class Renderer {
  public:
   explicit Renderer(const PreparedMesh& mesh);
   explicit Renderer(const PreparedGrid& grid);
+  /// For backends: `make_gl_renderer` in gl.h.
+  explicit Renderer(std::unique_ptr<scene::FrameRenderer> frames);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

@@ -39,7 +39,7 @@ Vector3 vertex_position(const FrameMesh& mesh, std::uint32_t id) {
 }
 
 /// Whether a face is certainly seen from its inner side: the eye lies clearly behind its plane.
-bool is_turned_away(const std::array<Vector3, 3>& p, const CameraFrame& frame) {
+bool is_turned_away(const std::array<Vector3, 3>& p, const scene::CameraFrame& frame) {
   Vector3 u{}, v{}, to_eye{};
   for (int i = 0; i < 3; ++i) {
     u[i] = p[1][i] - p[0][i];
@@ -57,7 +57,7 @@ bool is_turned_away(const std::array<Vector3, 3>& p, const CameraFrame& frame) {
 }
 
 /// The part of a face in front of the eye, projected.
-Extent project_face(const std::array<Vector3, 3>& p, const CameraFrame& frame) {
+Extent project_face(const std::array<Vector3, 3>& p, const scene::CameraFrame& frame) {
   Extent extent;
   const auto add = [&](const Vector3& q) {
     const double scale = frame.is_orthographic ? 1.0 : 1.0 / (q[2] - frame.eye[2]);
@@ -83,7 +83,7 @@ Extent project_face(const std::array<Vector3, 3>& p, const CameraFrame& frame) {
 }
 
 /// Pixels whose centre may lie in the extent.
-TileBounds pixels_of(const Extent& extent, const CameraFrame& frame) {
+TileBounds pixels_of(const Extent& extent, const scene::CameraFrame& frame) {
   const auto first = [](double low, int count) {
     return static_cast<int>(std::clamp(std::ceil(low - 0.5 - kMargin), 0.0, count * 1.0));
   };
@@ -125,7 +125,7 @@ const std::array<std::uint16_t, kTilePixels>& pixel_order() {
 }  // namespace
 
 TileBins bin_faces(const FrameMesh& mesh, std::size_t face_count, std::size_t first_eye_face,
-                   const CameraFrame& frame) {
+                   const scene::CameraFrame& frame) {
   TileBins bins;
   bins.columns = (frame.width + kTileSize - 1) / kTileSize;
   bins.rows = (frame.height + kTileSize - 1) / kTileSize;
@@ -160,7 +160,7 @@ TileBins bin_faces(const FrameMesh& mesh, std::size_t face_count, std::size_t fi
   return bins;
 }
 
-void collect_rays(const Kernels& kernels, const FrameMesh& mesh, const RayGrid& grid, const TileBins& bins,
+void collect_rays(const Kernels& kernels, const FrameMesh& mesh, const scene::RayGrid& grid, const TileBins& bins,
                   std::size_t tile, std::size_t first_eye_face, bool is_orthographic, TileScratch& scratch) {
   const int tile_column = static_cast<int>(tile % bins.columns) * kTileSize;
   const int tile_row = static_cast<int>(tile / bins.columns) * kTileSize;

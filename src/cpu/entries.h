@@ -2,8 +2,8 @@
 
 /// Where rays enter the mesh: faces are binned into tiles, then found in the tile's pixels and sorted by depth.
 
-#include "src/cpu/frame.h"
 #include "src/cpu/kernels/kernels.h"
+#include "src/scene/camera_frame.h"
 
 #include <cstdint>
 #include <span>
@@ -25,7 +25,8 @@ struct TileBins {
 
 /// Bins the faces that may be seen from their outer side. Faces from `first_eye_face` on belong to cells that
 /// hold the eye: rays start inside, so these may be met anywhere, also behind the eye.
-TileBins bin_faces(const FrameMesh& mesh, std::size_t face_count, std::size_t first_eye_face, const CameraFrame& frame);
+TileBins bin_faces(const FrameMesh& mesh, std::size_t face_count, std::size_t first_eye_face,
+                   const scene::CameraFrame& frame);
 
 /// Memory that a thread uses again from tile to tile.
 struct TileScratch {
@@ -36,7 +37,7 @@ struct TileScratch {
 };
 
 /// Fills `scratch.rays` with the rays of a tile that meet the mesh, neighbours in the picture close to each other.
-void collect_rays(const Kernels& kernels, const FrameMesh& mesh, const RayGrid& grid, const TileBins& bins,
+void collect_rays(const Kernels& kernels, const FrameMesh& mesh, const scene::RayGrid& grid, const TileBins& bins,
                   std::size_t tile, std::size_t first_eye_face, bool is_orthographic, TileScratch& scratch);
 
 }  // namespace tetravox::cpu

@@ -12,7 +12,7 @@ namespace tetravox::cpu {
 DomainScalars GridDomain::scalars() const {
   DomainScalars scalars{{grid_.scalar_offset, grid_.scalar_scale},
                         grid_.scalar_range,
-                        grid_.scalar_scale / find_local_frame(grid_).world_per_local,
+                        grid_.scalar_scale / scene::find_local_frame(grid_).world_per_local,
                         {}};
   for (const PreparedGrid& other : grid_.others) {
     if (other.data.shape.dimensions != grid_.data.shape.dimensions || other.data.association != grid_.data.association)

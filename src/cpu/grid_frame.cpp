@@ -9,29 +9,10 @@
 namespace tetravox::cpu {
 namespace {
 
-/// a * b for 3 x 4 matrices of affine maps.
-std::array<double, 12> chain(const std::array<double, 12>& a, const std::array<double, 12>& b) {
-  std::array<double, 12> c{};
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 4; ++column) {
-      double sum = column == 3 ? a[4 * row + 3] : 0.0;
-      for (int i = 0; i < 3; ++i) sum += a[4 * row + i] * b[4 * i + column];
-      c[4 * row + column] = sum;
-    }
-  return c;
-}
-
-grid::Point transform_point(const std::array<double, 12>& m, const grid::Point& p) {
-  grid::Point q{};
-  for (int row = 0; row < 3; ++row)
-    q[row] = m[4 * row] * p[0] + m[4 * row + 1] * p[1] + m[4 * row + 2] * p[2] + m[4 * row + 3];
-  return q;
-}
-
 /// Where points in front of the eye are seen, in pixels from the middle of the picture.
 class SeenBounds {
  public:
-  explicit SeenBounds(const CameraFrame& camera) : camera_(camera) {}
+  explicit SeenBounds(const scene::CameraFrame& camera) : camera_(camera) {}
 
   void add(const grid::Point& seen) {
     double scale = 1.0 / camera_.pixel_step;
@@ -56,20 +37,20 @@ class SeenBounds {
   }
 
  private:
-  const CameraFrame& camera_;
+  const scene::CameraFrame& camera_;
   double low_[2] = {HUGE_VAL, HUGE_VAL}, high_[2] = {-HUGE_VAL, -HUGE_VAL};
 };
 
 /// Pixels whose rays may meet the box: of its part in front of the eye.
-TileBounds project_box(const grid::BrickBox& box, const grid::GridFrame& frame, const GridView& view) {
+TileBounds project_box(const grid::BrickBox& box, const grid::GridFrame& frame, const scene::GridView& view) {
   constexpr double kNearest = 1e-6;  // in front of the eye
-  const CameraFrame& camera = view.camera;
+  const scene::CameraFrame& camera = view.camera;
   std::array<grid::Point, 8> corners;
   for (std::size_t corner = 0; corner < 8; ++corner) {
     grid::Point at{};
     for (int axis = 0; axis < 3; ++axis)
       at[axis] = frame.plane(axis, box.first[axis] + (corner >> axis & 1 ? box.count[axis] : 0));
-    corners[corner] = transform_point(view.camera_from_grid, at);
+    corners[corner] = scene::transform_point(view.camera_from_grid, at);
   }
   SeenBounds bounds(camera);
   const auto depth_of = [&](const grid::Point& seen) { return seen[2] - camera.eye[2]; };
@@ -98,7 +79,7 @@ std::array<std::uint32_t, 3> position_of(const PreparedGrid& grid, std::uint32_t
 
 /// The bricks front to back: a counting sort by their distance from the eye's, in bricks along the axes.
 std::vector<std::uint32_t> order_bricks(const PreparedGrid& grid, const grid::GridFrame& frame,
-                                        const std::vector<std::uint32_t>& bricks, const GridView& view) {
+                                        const std::vector<std::uint32_t>& bricks, const scene::GridView& view) {
   const auto& counts = grid.bricks.counts;
   std::array<std::int64_t, 3> nearest{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -139,46 +120,8 @@ void for_each_tile(const TileBounds& pixels, int tile_columns, const Visit& visi
 
 }  // namespace
 
-LocalFrame find_local_frame(const PreparedGrid& grid) {
-  LocalFrame frame;
-  double half_extent = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    frame.origin[axis] = 0.5 * grid.bounds[axis].min + 0.5 * grid.bounds[axis].max;
-    half_extent = std::max(half_extent, 0.5 * grid.bounds[axis].max - 0.5 * grid.bounds[axis].min);
-  }
-  if (half_extent > 0.0) frame.world_per_local = half_extent;
-  return frame;
-}
-
-GridView make_grid_view(const PreparedGrid& grid, const grid::GridFrame& frame, const Camera& camera, int width,
-                        int height) {
-  GridView view;
-  const auto [center, world_per_local] = find_local_frame(grid);
-  view.world_per_local = world_per_local;
-  view.origin = center;
-  view.camera = make_camera_frame(center, view.world_per_local, camera, width, height);
-  // Offsets are taken from the centre, so that a grid far from the origin loses nothing.
-  std::array<double, 12> grid_from_offset{}, offset_from_camera{}, offset_from_grid{}, camera_from_offset{};
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) {
-      grid_from_offset[4 * row + column] = frame.grid_from_world[3 * row + column];
-      grid_from_offset[4 * row + 3] +=
-          frame.grid_from_world[3 * row + column] * (center[column] - frame.origin[column]);
-      offset_from_camera[4 * row + column] = view.camera.axes[column][row] * view.world_per_local;
-      offset_from_grid[4 * row + column] = frame.world_from_grid[3 * row + column];
-      camera_from_offset[4 * row + column] = view.camera.axes[row][column] / view.world_per_local;
-    }
-  for (int row = 0; row < 3; ++row) offset_from_grid[4 * row + 3] = frame.origin[row] - center[row];
-  view.grid_from_camera = chain(grid_from_offset, offset_from_camera);
-  view.camera_from_grid = chain(camera_from_offset, offset_from_grid);
-  view.eye = transform_point(view.grid_from_camera, view.camera.eye);
-  if (view.camera.is_orthographic)
-    for (int row = 0; row < 3; ++row) view.eye[row] = view.grid_from_camera[4 * row + 2];
-  return view;
-}
-
 BrickBins bin_bricks(const PreparedGrid& grid, const grid::GridFrame& frame, const std::vector<std::uint32_t>& bricks,
-                     const GridView& view) {
+                     const scene::GridView& view) {
   BrickBins bins;
   bins.columns = (view.camera.width + kTileSize - 1) / kTileSize;
   bins.rows = (view.camera.height + kTileSize - 1) / kTileSize;

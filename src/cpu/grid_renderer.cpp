@@ -2,7 +2,7 @@
 #include "src/cpu/brick_plan.h"
 #include "src/cpu/clip_intervals.h"
 #include "src/cpu/filtered_field.h"
-#include "src/cpu/frame_renderer.h"
+#include "src/cpu/frame_renderers.h"
 #include "src/cpu/grid_domain.h"
 #include "src/cpu/grid_frame.h"
 #include "src/cpu/grid_marches.h"
@@ -44,7 +44,7 @@ constexpr float kNegligibleOfTolerance = 0.1f;
 class TileIntervals {
  public:
   /// Finds them, and puts each ray at the first.
-  void find(const ClipScene& clip, const RayGrid& grid, int column, int row, MarchRays& rays) {
+  void find(const ClipScene& clip, const scene::RayGrid& grid, int column, int row, MarchRays& rays) {
     intervals_.clear();
     next_.assign(MarchRays::kCount, 0);
     end_.assign(MarchRays::kCount, 0);
@@ -102,8 +102,8 @@ struct Workspace {
 
 /// One frame: what all its tiles share.
 struct FrameParts {
-  GridView view;
-  Rays rays;
+  scene::GridView view;
+  scene::Rays rays;
   BrickBins bins;
   std::vector<LatticeField> others;
   PlannedGrid grid;
@@ -131,7 +131,7 @@ double mean_spacing(const grid::GridFrame& frame) {
                             m[2] * (m[3] * m[7] - m[4] * m[6])));
 }
 
-class GridRenderer final : public FrameRenderer {
+class GridRenderer final : public scene::FrameRenderer {
  public:
   explicit GridRenderer(const PreparedGrid& grid)
       : grid_(grid),
@@ -165,7 +165,7 @@ class GridRenderer final : public FrameRenderer {
   }
   bool has_domain() const override { return domain_.is_set(); }
 
-  void render(const Camera& camera, const RenderSettings& settings, const FrameContext& context, Image& image,
+  void render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context, Image& image,
               RenderStatistics& statistics) override;
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
@@ -178,8 +178,8 @@ class GridRenderer final : public FrameRenderer {
            centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes();
   }
 
-  Source source() const override { return Source::kMarch; }
-  double diagonal() const override { return diagonal_of(grid_.bounds); }
+  std::vector<Source> sources() const override { return {Source::kMarch}; }
+  double diagonal() const override { return scene::diagonal_of(grid_.bounds); }
 
  private:
   optics::ScalarMap scalar_map() const { return {grid_.scalar_offset, grid_.scalar_scale}; }
@@ -191,13 +191,13 @@ class GridRenderer final : public FrameRenderer {
   void prepare_filter(const RenderSettings& settings);
   void fill_lattices(const FrameParts& frame, std::uint32_t index, Workspace& workspace, MarchBrick& brick) const;
   GradientSource choose_gradients(const RenderSettings& settings) const;
-  void describe(const RenderSettings& settings, const FrameContext& context, FrameParts& frame);
-  void trace(const RenderSettings& settings, const FrameContext& context, FrameParts& frame) const;
+  void describe(const RenderSettings& settings, const scene::FrameContext& context, FrameParts& frame);
+  void trace(const RenderSettings& settings, const scene::FrameContext& context, FrameParts& frame) const;
   ShadowedBody shadowed_body() const;
-  void prepare_shadows(const Camera& camera, const RenderSettings& settings, const FrameContext& context);
+  void prepare_shadows(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context);
   struct Pass;
   Marches choose_kernels(const Kernels& kernels, const RenderSettings& settings, bool has_effects) const;
-  void draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics);
+  void draw(const Pass& pass, const scene::FrameContext& context, Image& image, RenderStatistics& statistics);
   LatticeField lattice_field(const RenderSettings& settings, const Kernels& kernels) const;
   PlanSources plan_sources(const RenderSettings& settings) const;
   PlanSettings plan_settings(const RenderSettings& settings) const;
@@ -258,7 +258,7 @@ GradientSource GridRenderer::choose_gradients(const RenderSettings& settings) co
 }
 
 /// Fills the effects of a frame.
-void GridRenderer::describe(const RenderSettings& settings, const FrameContext& context, FrameParts& frame) {
+void GridRenderer::describe(const RenderSettings& settings, const scene::FrameContext& context, FrameParts& frame) {
   if (!has_centroids_ && !domain_.is_set()) {
     optics::build_centroid_table(antiderivative_, centroids_);
     has_centroids_ = true;
@@ -283,7 +283,7 @@ void GridRenderer::describe(const RenderSettings& settings, const FrameContext& 
 }
 
 /// Shadows by rays.
-void GridRenderer::trace(const RenderSettings& settings, const FrameContext& context, FrameParts& frame) const {
+void GridRenderer::trace(const RenderSettings& settings, const scene::FrameContext& context, FrameParts& frame) const {
   Illustration& illustration = frame.illustration;
   if (settings.lighting.shadows != ShadowKind::kExact || illustration.lights.empty()) return;
   // Where nobody asks for gradients, larger cells will do.
@@ -298,14 +298,14 @@ void GridRenderer::trace(const RenderSettings& settings, const FrameContext& con
   if (settings.surfaces.empty()) grid.field.most_parts = kPartsForDepths;
   GridShadowSettings exactness{frame.job.allowed_rate, frame.job.most_pieces, {}};
   std::copy_n(illustration.effects.camera_from_gradient, 9, exactness.camera_from_gradient.begin());
-  const LocalFrame local{frame.view.origin, frame.view.world_per_local};
+  const scene::LocalFrame local{frame.view.origin, frame.view.world_per_local};
   illustration.medium =
       std::make_unique<GridShadows>(grid, local, make_shadow_optics(settings, extinction_, illustration), exactness);
   trace_shadows(settings, {frame.view.camera, local.origin, local.world_per_local}, context, illustration);
 }
 
 ShadowedBody GridRenderer::shadowed_body() const {
-  const LocalFrame local = find_local_frame(drawn());
+  const scene::LocalFrame local = scene::find_local_frame(drawn());
   return {drawn().bounds, local.origin, local.world_per_local};
 }
 
@@ -438,7 +438,7 @@ struct GridRenderer::Pass {
   const DepthRecord* record = nullptr;
 };
 
-void GridRenderer::render(const Camera& camera, const RenderSettings& settings, const FrameContext& context,
+void GridRenderer::render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context,
                           Image& image, RenderStatistics& statistics) {
   // The spline would have to pass through the densities of each function: no table of the values does that.
   if (settings.integrator == Integrator::kPre && settings.filter.kind == FilterKind::kInterpolatingBspline)
@@ -455,9 +455,11 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
   plan(settings);
   statistics.plan_seconds = timer.seconds() - shadow_seconds;
   draw({camera, settings, has_effects}, context, image, statistics);
+  note_backend(settings, statistics);
 }
 
-void GridRenderer::prepare_shadows(const Camera& camera, const RenderSettings& settings, const FrameContext& context) {
+void GridRenderer::prepare_shadows(const Camera& camera, const RenderSettings& settings,
+                                   const scene::FrameContext& context) {
   const auto draw_depths = [&](const LightPass& pass, Image& image) {
     RenderStatistics uncounted;
     plan(pass.settings);
@@ -474,9 +476,10 @@ Marches GridRenderer::choose_kernels(const Kernels& kernels, const RenderSetting
 }
 
 /// Draws with the plans at hand.
-void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics) {
+void GridRenderer::draw(const Pass& pass, const scene::FrameContext& context, Image& image,
+                        RenderStatistics& statistics) {
   const RenderSettings& settings = pass.settings;
-  const Kernels& kernels = context.kernels;
+  const Kernels& kernels = kernels_for(settings.instruction_set);
   const Progress& progress = context.progress;
   const bool has_effects = pass.has_effects;
   IntegratorTables tables{&antiderivative_,
@@ -489,8 +492,8 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
   tables.effects = &frame.illustration.effects;
   const DomainFunction domain = domain_.make_function(settings.tolerance, diagonal());
   tables.domain = &domain;
-  frame.view = make_grid_view(drawn(), frame_, pass.camera, settings.width, settings.height);
-  frame.rays = make_rays(frame.view.camera, frame.view.world_per_local);
+  frame.view = scene::make_grid_view(drawn(), frame_, pass.camera, settings.width, settings.height);
+  frame.rays = scene::make_rays(frame.view.camera, frame.view.world_per_local);
   frame.bins = bin_bricks(drawn(), frame_, visible_, frame.view);
   frame.grid = {&frame_, lattice_field(settings, kernels), plan_sources(settings), plans_};
   frame.others = domain_.make_fields(frame.grid.field);
@@ -504,13 +507,14 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
   if (settings.wants_depth) frame.illustration.effects.depth = image.depth.data();
   frame.has_clipping = !settings.clipping.shapes.empty();
   if (frame.has_clipping)
-    frame.clip = make_clip_scene(settings.clipping, context.clip_volumes,
-                                 world_from_camera(frame.view.camera, frame.view.origin, frame.view.world_per_local));
+    frame.clip =
+        make_clip_scene(settings.clipping, context.clip_volumes,
+                        scene::world_from_camera(frame.view.camera, frame.view.origin, frame.view.world_per_local));
   frame_bytes_ = frame.bins.bricks.size() * sizeof(BinnedBrick);
 
   std::atomic<std::uint64_t> segments{0}, met_rays{0};
   tbb::enumerable_thread_specific<Workspace> workspaces;
-  TileProgress tile_progress(progress, frame.bins.tile_count());
+  scene::TileProgress tile_progress(progress, frame.bins.tile_count());
   support::parallel_chunks(frame.bins.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
     Workspace& workspace = workspaces.local();
     for (std::size_t tile = begin; tile < end; ++tile) {
@@ -523,14 +527,14 @@ void GridRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
   });
   support::throw_if_cancelled(progress);  // the last tile may have been given up
   if (frame.illustration.rays) frame.illustration.rays->rethrow_failure();
-  if (settings.wants_depth) measure_depth(frame.view.camera, frame.view.world_per_local, image);
+  if (settings.wants_depth) scene::measure_depth(frame.view.camera, frame.view.world_per_local, image);
   statistics.segments = segments;
   statistics.rays = met_rays;
 }
 
 }  // namespace
 
-std::unique_ptr<FrameRenderer> make_grid_renderer(const PreparedGrid& grid) {
+std::unique_ptr<scene::FrameRenderer> make_grid_renderer(const PreparedGrid& grid) {
   if (grid.bricks.count() == 0) throw Error(ErrorCode::kNothingToDraw, "the grid has no cells to draw");
   return std::make_unique<GridRenderer>(grid);
 }

@@ -298,7 +298,7 @@ class GridShadows::Walk {
   Mark left_;
 };
 
-GridShadows::GridShadows(const PlannedGrid& grid, const LocalFrame& local, const ShadowOptics& optics,
+GridShadows::GridShadows(const PlannedGrid& grid, const scene::LocalFrame& local, const ShadowOptics& optics,
                          const GridShadowSettings& settings)
     : grid_(grid), local_(local), optics_(optics), settings_(settings) {
   for (int axis = 0; axis < 3; ++axis)

@@ -24,7 +24,7 @@ struct GridShadowSettings {
 /// at once, those of one value too. In a cell the scalar is a cubic, cut into linear pieces as in the picture.
 class GridShadows final : public ShadowMedium {
  public:
-  GridShadows(const PlannedGrid& grid, const LocalFrame& local, const ShadowOptics& optics,
+  GridShadows(const PlannedGrid& grid, const scene::LocalFrame& local, const ShadowOptics& optics,
               const GridShadowSettings& settings);
 
   void gather(const ShadowLine& line, std::span<const DepthRange> kept, Transmission& sum) const override;
@@ -36,7 +36,7 @@ class GridShadows final : public ShadowMedium {
   DepthLine grid_line(const ShadowLine& line) const;
 
   PlannedGrid grid_;
-  LocalFrame local_;
+  scene::LocalFrame local_;
   ShadowOptics optics_;
   GridShadowSettings settings_;
   std::array<double, 3> upper_{};  ///< of the grid; its lower corner is 0

@@ -62,7 +62,7 @@ SurfaceSheet make_sheet(const Isosurface& surface, const optics::ScalarMap& map)
 
 /// Directions of the camera frame -> those of the environment, and what it holds there.
 EnvironmentMaps make_environment_maps(const EnvironmentLight& light, const optics::FilteredEnvironment& filtered,
-                                      const CameraFrame& camera) {
+                                      const scene::CameraFrame& camera) {
   EnvironmentMaps maps;
   const std::array<Vector3, 3> axes = environment_axes(light.up, light.rotation);
   for (std::size_t row = 0; row < 3; ++row) {
@@ -169,7 +169,7 @@ std::uint64_t ShadowCache::bytes() const {
   return floats * sizeof(float);
 }
 
-void ShadowCache::attach(const RenderSettings& settings, const ShadowedBody& body, const CameraFrame& camera,
+void ShadowCache::attach(const RenderSettings& settings, const ShadowedBody& body, const scene::CameraFrame& camera,
                          Illustration& illustration) const {
   Shading& shading = illustration.shading;
   const float step = find_shadow_step(settings, body);
@@ -197,7 +197,7 @@ ShadowOptics make_shadow_optics(const RenderSettings& settings, const optics::Ex
           -std::log(kDarkOfTolerance * settings.tolerance)};
 }
 
-void trace_shadows(const RenderSettings& settings, const ShadowFrame& frame, const FrameContext& context,
+void trace_shadows(const RenderSettings& settings, const ShadowFrame& frame, const scene::FrameContext& context,
                    Illustration& illustration) {
   illustration.rays =
       std::make_unique<ShadowRays>(frame, *illustration.medium, settings.clipping, context.clip_volumes);
@@ -207,7 +207,7 @@ void trace_shadows(const RenderSettings& settings, const ShadowFrame& frame, con
   illustration.effects.largest_lit = static_cast<float>(kLitAlike * fineness);
 }
 
-Vector3 to_camera(const CameraFrame& camera, const Vector3& direction) {
+Vector3 to_camera(const scene::CameraFrame& camera, const Vector3& direction) {
   Vector3 seen{};
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < 3; ++i) seen[axis] += camera.axes[axis][i] * direction[i];

@@ -3,14 +3,14 @@
 /// The effects of a frame: what RenderSettings ask for beside emission and absorption, as the kernels want it.
 
 #include "src/cpu/brick_plan.h"
-#include "src/cpu/frame.h"
-#include "src/cpu/frame_renderer.h"
 #include "src/cpu/kernels/effects.h"
 #include "src/cpu/shadow_rays.h"
 #include "src/cpu/shadows.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/centroid_table.h"
 #include "src/optics/environment_filter.h"
+#include "src/scene/camera_frame.h"
+#include "src/scene/frame_renderer.h"
 #include "tetravox/render.h"
 
 #include <array>
@@ -23,7 +23,7 @@ namespace tetravox::cpu {
 
 /// Data and camera of a frame.
 struct IllustratedFrame {
-  CameraFrame camera;
+  scene::CameraFrame camera;
   Vector3 origin{};  ///< world position of the local origin
   double world_per_local = 1.0;
   optics::ScalarMap scalar_map;
@@ -70,7 +70,7 @@ ShadowOptics make_shadow_optics(const RenderSettings& settings, const optics::Ex
                                 const Illustration& illustration);
 
 /// Lights the frame through `illustration.medium` by rays. Views the context's clip volumes.
-void trace_shadows(const RenderSettings& settings, const ShadowFrame& frame, const FrameContext& context,
+void trace_shadows(const RenderSettings& settings, const ShadowFrame& frame, const scene::FrameContext& context,
                    Illustration& illustration);
 
 /// What lights see, from frame to frame as long as nothing changes.
@@ -87,7 +87,7 @@ class ShadowCache {
   void prepare(const RenderSettings& settings, const Sources& sources, const DrawDepths& draw,
                const Progress& progress);
   /// Hands it to a frame. Valid as long as this.
-  void attach(const RenderSettings& settings, const ShadowedBody& body, const CameraFrame& camera,
+  void attach(const RenderSettings& settings, const ShadowedBody& body, const scene::CameraFrame& camera,
               Illustration& illustration) const;
   std::uint64_t bytes() const;
 
@@ -98,6 +98,6 @@ class ShadowCache {
 };
 
 /// A world direction in the camera frame.
-Vector3 to_camera(const CameraFrame& camera, const Vector3& direction);
+Vector3 to_camera(const scene::CameraFrame& camera, const Vector3& direction);
 
 }  // namespace tetravox::cpu

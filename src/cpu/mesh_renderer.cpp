@@ -1,15 +1,15 @@
 #include "src/cpu/clip_intervals.h"
 #include "src/cpu/domain.h"
 #include "src/cpu/entries.h"
-#include "src/cpu/eye_cells.h"
-#include "src/cpu/frame.h"
-#include "src/cpu/frame_renderer.h"
+#include "src/cpu/frame_renderers.h"
 #include "src/cpu/illustration.h"
 #include "src/cpu/mesh_shadows.h"
 #include "src/mesh/gradients.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/extinction_integral.h"
 #include "src/optics/transparency_table.h"
+#include "src/scene/camera_frame.h"
+#include "src/scene/eye_cells.h"
 #include "src/support/memory.h"
 #include "src/support/threads.h"
 #include "tetravox/error.h"
@@ -54,8 +54,8 @@ auto choose_illustrated_walk(const Kernels& kernels, Association association, In
 }
 
 /// Finds the parts of the rays that the clipping keeps, and leaves out rays of which it keeps none.
-void clip_rays(const ClipScene& clip, const RayGrid& grid, ClipScratch& scratch, std::vector<ClipInterval>& found,
-               TileRays& tile) {
+void clip_rays(const ClipScene& clip, const scene::RayGrid& grid, ClipScratch& scratch,
+               std::vector<ClipInterval>& found, TileRays& tile) {
   tile.clips.clear();
   std::erase_if(tile.rays, [&](TileRays::Ray& ray) {
     found.clear();
@@ -72,8 +72,8 @@ void clip_rays(const ClipScene& clip, const RayGrid& grid, ClipScratch& scratch,
 
 /// Everything that the tiles of one frame share.
 struct Frame {
-  CameraFrame camera;
-  Rays rays;
+  scene::CameraFrame camera;
+  scene::Rays rays;
   std::vector<BoundaryFace> faces;  // boundary and faces around the eye; empty where the boundary alone serves
   std::size_t first_eye_face = 0;
   FrameMesh mesh;
@@ -82,15 +82,15 @@ struct Frame {
 
 Frame prepare_frame(const PreparedMesh& mesh, const Camera& camera, const RenderSettings& settings, float* vertices) {
   Frame frame;
-  frame.camera = make_camera_frame(mesh, camera, settings.width, settings.height);
-  transform_vertices(mesh, frame.camera, vertices);
+  frame.camera = scene::make_camera_frame(mesh, camera, settings.width, settings.height);
+  scene::transform_vertices(mesh, frame.camera, vertices);
   frame.mesh = {vertices, static_cast<std::uint32_t>(mesh.vertices.size() - 1), mesh.cells.data(),
                 mesh.cell_scalars.empty() ? nullptr : mesh.cell_scalars.data(), mesh.boundary.data()};
   frame.first_eye_face = mesh.boundary.size();
   std::size_t face_count = mesh.boundary.size();
   const std::vector<BoundaryFace> around =
-      find_eye_cell_faces(frame.mesh, mesh.boundary, mesh.cells.size(), frame.camera);
-  frame.rays = make_rays(frame.camera, mesh.world_per_local);  // after that: the eye may have been moved
+      scene::find_eye_cell_faces(frame.mesh.seen(), mesh.boundary, mesh.cells.size(), frame.camera);
+  frame.rays = scene::make_rays(frame.camera, mesh.world_per_local);  // after that: the eye may have been moved
   if (!around.empty()) {
     frame.faces = mesh.boundary;
     frame.faces.insert(frame.faces.end(), around.begin(), around.end());
@@ -112,7 +112,7 @@ struct MeshGradients {
   std::vector<mesh::Gradient> records;  ///< [vertices] or [cells]
 };
 
-class MeshRenderer final : public FrameRenderer {
+class MeshRenderer final : public scene::FrameRenderer {
  public:
   explicit MeshRenderer(const PreparedMesh& mesh) : mesh_(mesh) {}
 
@@ -139,7 +139,7 @@ class MeshRenderer final : public FrameRenderer {
   }
   bool has_domain() const override { return domain_.is_set(); }
 
-  void render(const Camera& camera, const RenderSettings& settings, const FrameContext& context, Image& image,
+  void render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context, Image& image,
               RenderStatistics& statistics) override;
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
@@ -153,8 +153,8 @@ class MeshRenderer final : public FrameRenderer {
            shadows_.bytes() + domain_.bytes() + occupancy_.sums.size() * sizeof(std::int32_t);
   }
 
-  Source source() const override { return Source::kWalk; }
-  double diagonal() const override { return diagonal_of(mesh_.bounds); }
+  std::vector<Source> sources() const override { return {Source::kWalk}; }
+  double diagonal() const override { return scene::diagonal_of(mesh_.bounds); }
 
  private:
   DomainScalars scalars() const;
@@ -163,9 +163,9 @@ class MeshRenderer final : public FrameRenderer {
   using WalkKernel = WalkStatistics (*)(const WalkJob&);
   WalkKernel choose_kernel(const Kernels& kernels, const RenderSettings& settings, bool has_effects) const;
   void prepare_effects(const RenderSettings& settings);
-  void describe(const RenderSettings& settings, const FrameContext& context, Frame& frame,
+  void describe(const RenderSettings& settings, const scene::FrameContext& context, Frame& frame,
                 Illustration& illustration) const;
-  void draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics);
+  void draw(const Pass& pass, const scene::FrameContext& context, Image& image, RenderStatistics& statistics);
 
   const PreparedMesh& mesh_;
   OpticalFunction function_;
@@ -238,7 +238,7 @@ void MeshRenderer::prepare_effects(const RenderSettings& settings) {
 }
 
 /// Fills the effects of a frame, and points it at the gradients.
-void MeshRenderer::describe(const RenderSettings& settings, const FrameContext& context, Frame& frame,
+void MeshRenderer::describe(const RenderSettings& settings, const scene::FrameContext& context, Frame& frame,
                             Illustration& illustration) const {
   frame.mesh.gradients = gradients_.records.empty() ? nullptr : gradients_.records.front().data();
   frame.mesh.has_cell_gradients = gradients_.method == GradientMethod::kCell;
@@ -265,7 +265,7 @@ void MeshRenderer::describe(const RenderSettings& settings, const FrameContext& 
   trace_shadows(settings, {frame.camera, mesh_.origin, mesh_.world_per_local}, context, illustration);
 }
 
-void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, const FrameContext& context,
+void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context,
                           Image& image, RenderStatistics& statistics) {
   if (!vertices_) vertices_ = std::make_unique_for_overwrite<float[]>(4 * mesh_.vertices.size());
   const bool has_effects = wants_effects(settings) || domain_.is_set();
@@ -281,11 +281,13 @@ void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, 
                      context.progress);
   }
   draw({camera, settings, has_effects}, context, image, statistics);
+  note_backend(settings, statistics);
 }
 
-void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& image, RenderStatistics& statistics) {
+void MeshRenderer::draw(const Pass& pass, const scene::FrameContext& context, Image& image,
+                        RenderStatistics& statistics) {
   const RenderSettings& settings = pass.settings;
-  const Kernels& kernels = context.kernels;
+  const Kernels& kernels = kernels_for(settings.instruction_set);
   Frame frame = prepare_frame(mesh_, pass.camera, settings, vertices_.get());
   frame_bytes_ = bytes_of(frame);
   Illustration illustration;
@@ -302,11 +304,11 @@ void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
   tables.domain = &domain;
   const auto walk = choose_kernel(kernels, settings, pass.has_effects);
   const ClipScene clip = make_clip_scene(settings.clipping, context.clip_volumes,
-                                         world_from_camera(frame.camera, mesh_.origin, mesh_.world_per_local));
+                                         scene::world_from_camera(frame.camera, mesh_.origin, mesh_.world_per_local));
   std::atomic<std::uint64_t> segments{0}, stopped_rays{0}, rays{0};
   tbb::enumerable_thread_specific<TileScratch> scratches;
   tbb::enumerable_thread_specific<ClipScratch> clip_scratch;
-  TileProgress tile_progress(context.progress, frame.bins.tile_count());
+  scene::TileProgress tile_progress(context.progress, frame.bins.tile_count());
   support::parallel_chunks(frame.bins.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
     TileScratch& scratch = scratches.local();
     for (std::size_t tile = begin; tile < end; ++tile) {
@@ -327,7 +329,7 @@ void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
   });
   support::throw_if_cancelled(context.progress);  // the last tile may have been given up
   if (illustration.rays) illustration.rays->rethrow_failure();
-  if (settings.wants_depth) measure_depth(frame.camera, mesh_.world_per_local, image);
+  if (settings.wants_depth) scene::measure_depth(frame.camera, mesh_.world_per_local, image);
   statistics.segments = segments;
   statistics.rays = rays;
   statistics.stopped_rays = stopped_rays;
@@ -335,7 +337,7 @@ void MeshRenderer::draw(const Pass& pass, const FrameContext& context, Image& im
 
 }  // namespace
 
-std::unique_ptr<FrameRenderer> make_mesh_renderer(const PreparedMesh& mesh) {
+std::unique_ptr<scene::FrameRenderer> make_mesh_renderer(const PreparedMesh& mesh) {
   if (mesh.cells.empty()) throw Error(ErrorCode::kNothingToDraw, "the mesh has no cells to draw");
   if (mesh.cells.size() > kMostCells)
     throw Error(ErrorCode::kUnsupported, "the mesh has " + std::to_string(mesh.cells.size()) + " tetrahedra; at most " +

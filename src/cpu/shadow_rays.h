@@ -5,9 +5,9 @@
 /// `ShadowRays` knows lights and clipping; a `ShadowMedium` (a mesh or a grid) knows what lies along a line.
 
 #include "src/cpu/clip_intervals.h"
-#include "src/cpu/frame.h"
 #include "src/cpu/kernels/effects.h"
 #include "src/optics/extinction_integral.h"
+#include "src/scene/camera_frame.h"
 #include "tetravox/lighting.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -110,7 +110,7 @@ class ShadowMedium {
 
 /// Where places lie.
 struct ShadowFrame {
-  CameraFrame camera;
+  scene::CameraFrame camera;
   Vector3 origin{};  ///< world position of the local origin
   double world_per_local = 1.0;
 };

@@ -57,7 +57,7 @@ Camera look_along(const Vector3& direction, const std::array<ValueRange, 3>& bou
   camera.focal_point = sphere.center;
   camera.view_up = pick_up(direction);
   camera.parallel_scale = sphere.radius;
-  const CameraFrame frame = make_camera_frame(sphere.center, 1.0, camera, 2, 2);
+  const scene::CameraFrame frame = scene::make_camera_frame(sphere.center, 1.0, camera, 2, 2);
   double half = 0.0;
   for (const Vector3& corner : corners_of(bounds))
     for (int side = 0; side < 2; ++side) {
@@ -97,7 +97,7 @@ std::vector<Camera> look_from(const Vector3& position, const std::array<ValueRan
 }
 
 /// Rows of local coordinates of a camera's frame: what a world point is there.
-Vector3 seen_from(const CameraFrame& frame, const ShadowedBody& body, const Vector3& world) {
+Vector3 seen_from(const scene::CameraFrame& frame, const ShadowedBody& body, const Vector3& world) {
   Vector3 local{};
   for (int axis = 0; axis < 3; ++axis) local[axis] = (world[axis] - body.origin[axis]) / body.world_per_local;
   Vector3 seen{};
@@ -128,7 +128,7 @@ LightDepths draw_light(const Camera& camera, int size, const RenderSettings& set
   LightDepths light;
   light.camera = camera;
   light.size = size;
-  light.frame = make_camera_frame(body.origin, body.world_per_local, camera, size, size);
+  light.frame = scene::make_camera_frame(body.origin, body.world_per_local, camera, size, size);
   double near = std::numeric_limits<double>::infinity(), far = -near;
   for (const Vector3& corner : corners_of(body.bounds)) {
     const double z = seen_from(light.frame, body, corner)[2];
@@ -187,7 +187,7 @@ class DepthLookup {
   DepthLookup(const LightDepths& light, const ShadowedBody& body) : light_(light), body_(body) {}
 
   float operator()(const Vector3& world) const {
-    const CameraFrame& frame = light_.frame;
+    const scene::CameraFrame& frame = light_.frame;
     const Vector3 seen = seen_from(frame, body_, world);
     const double half = 0.5 * light_.size - 0.5;
     const std::array<double, 3> at{(seen[0] - frame.eye[0]) / frame.pixel_step + half,
@@ -256,9 +256,9 @@ std::vector<std::vector<LightDepths>> find_light_depths(const RenderSettings& se
   return found;
 }
 
-ShadowMap make_shadow_map(const LightDepths& depths, const CameraFrame& camera) {
+ShadowMap make_shadow_map(const LightDepths& depths, const scene::CameraFrame& camera) {
   ShadowMap map;
-  const CameraFrame& light = depths.frame;
+  const scene::CameraFrame& light = depths.frame;
   map.is_perspective = !light.is_orthographic;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
@@ -302,7 +302,7 @@ Openness find_openness(const RenderSettings& settings, const ShadowedBody& body,
   return openness;
 }
 
-OcclusionMap make_occlusion_map(const Openness& openness, const ShadowedBody& body, const CameraFrame& camera) {
+OcclusionMap make_occlusion_map(const Openness& openness, const ShadowedBody& body, const scene::CameraFrame& camera) {
   OcclusionMap map;
   for (int row = 0; row < 3; ++row) {
     const ValueRange& bound = body.bounds[row];

@@ -2,8 +2,8 @@
 
 /// Optical depths towards lights, and how open places are: both from pictures that record depths instead of colours.
 
-#include "src/cpu/frame.h"
 #include "src/cpu/kernels/effects.h"
+#include "src/scene/camera_frame.h"
 #include "src/support/threads.h"
 #include "tetravox/render.h"
 
@@ -24,7 +24,7 @@ struct ShadowedBody {
 /// Depths that a light sees: at pixels of a square picture from its place, at equal steps along its view.
 struct LightDepths {
   Camera camera;
-  CameraFrame frame;
+  scene::CameraFrame frame;
   int size = 0;  ///< pixels a side, and steps
   float z_first = 0.0f, slices_per_z = 0.0f;
   std::vector<float> depths;  ///< [size][size][size]: step, row, column
@@ -44,7 +44,7 @@ std::vector<std::vector<LightDepths>> find_light_depths(const RenderSettings& se
                                                         const Camera& eye, const DrawDepths& draw);
 
 /// The map of a light's depths for places in the frame of another camera. Views `depths`.
-ShadowMap make_shadow_map(const LightDepths& depths, const CameraFrame& camera);
+ShadowMap make_shadow_map(const LightDepths& depths, const scene::CameraFrame& camera);
 
 /// How open each place of a lattice over the bounds is: the mean of what comes through over all directions, and its
 /// first moments along the world's axes.
@@ -59,7 +59,7 @@ Openness find_openness(const RenderSettings& settings, const ShadowedBody& body,
                        const Progress& progress);
 
 /// The map of an openness for places in the frame of a camera. Views `openness`.
-OcclusionMap make_occlusion_map(const Openness& openness, const ShadowedBody& body, const CameraFrame& camera);
+OcclusionMap make_occlusion_map(const Openness& openness, const ShadowedBody& body, const scene::CameraFrame& camera);
 
 /// Local length from ray to ray of a light, and from step to step along it, about.
 float find_shadow_step(const RenderSettings& settings, const ShadowedBody& body);

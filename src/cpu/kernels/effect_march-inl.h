@@ -161,7 +161,7 @@ struct PassingRays {
   Float z_left, scalar_left;
 
   PassingRays(const MarchJob& job, int first) {
-    const RayGrid& grid = *job.grid;
+    const scene::RayGrid& grid = *job.grid;
     const Int ray = hn::LoadU(kInt, job.rays->met.ray + first);
     static_assert(kTileSize == 32);
     const Int column = hn::Add(hn::And(ray, hn::Set(kInt, kTileSize - 1)), hn::Set(kInt, job.column));

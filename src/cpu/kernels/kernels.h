@@ -10,6 +10,8 @@
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/steepness_table.h"
 #include "src/optics/transparency_table.h"
+#include "src/scene/camera_frame.h"
+#include "src/scene/eye_cells.h"
 #include "tetravox/mesh.h"
 
 #include <atomic>
@@ -22,18 +24,6 @@ namespace tetravox::cpu {
 /// Pixels are drawn in square tiles.
 inline constexpr int kTileSize = 32;
 
-/// Rays of a frame. Camera frame: x to the right, y up, z along the view, local length units, origin that of the mesh.
-/// The ray of pixel (column, row) is x = column_offset + column_slope * z, y = row_offset + row_slope * z.
-struct RayGrid {
-  int width = 0, height = 0;
-  const float* column_offset = nullptr;  ///< [width], padded to whole vectors; likewise the other three
-  const float* column_slope = nullptr;
-  const float* row_offset = nullptr;  ///< [height]
-  const float* row_slope = nullptr;
-  float z_near = 0.0f;           ///< rays start at this z: the eye, or the plane of an orthographic camera
-  float world_per_local = 1.0f;  ///< length
-};
-
 /// The mesh as seen by the camera.
 struct FrameMesh {
   const float* vertices = nullptr;  ///< [vertices][4] x, y, z in the camera frame, stored scalar
@@ -45,6 +35,8 @@ struct FrameMesh {
   bool has_cell_gradients = false;
   /// Further stored scalars, [vertices], or [cells] with cell data; one for each axis of a function that asks for it.
   const float* others[kMostVariables] = {};
+
+  scene::SeenMesh seen() const { return {vertices, last_vertex, cells}; }
 };
 
 /// What integrators look up; each uses one or two of them.
@@ -100,7 +92,7 @@ struct WalkStatistics {
 
 struct WalkJob {
   const FrameMesh* mesh = nullptr;
-  const RayGrid* rays = nullptr;
+  const scene::RayGrid* rays = nullptr;
   const IntegratorTables* tables = nullptr;
   const TileRays* tile = nullptr;
   float* pixels = nullptr;  ///< [height][width][4], premultiplied
@@ -168,9 +160,9 @@ struct MarchJob {
   const MarchBrick* brick = nullptr;
   const IntegratorTables* tables = nullptr;
   const optics::SteepnessTable* steepness = nullptr;
-  float allowed_rate = 0.0f;      ///< error in colour for one unit of world length that a segment may have
-  float most_pieces = 12.0f;      ///< that a cell is cut into
-  const RayGrid* grid = nullptr;  ///< for effects, with the tile's corner
+  float allowed_rate = 0.0f;             ///< error in colour for one unit of world length that a segment may have
+  float most_pieces = 12.0f;             ///< that a cell is cut into
+  const scene::RayGrid* grid = nullptr;  ///< for effects, with the tile's corner
   int column = 0, row = 0;
   float stride = 1.0f;           ///< lattice cells
   float sample_distance = 0.0f;  ///< world length between samples at a fixed rate, which goes before `stride`
@@ -180,7 +172,7 @@ struct MarchJob {
 
 /// Where the rays of a tile lie in a grid.
 struct MarchStart {
-  const RayGrid* rays = nullptr;
+  const scene::RayGrid* rays = nullptr;
   int column = 0, row = 0;          ///< of the tile's corner
   float grid_from_camera[12] = {};  ///< rows of a 3 x 4 matrix
   float upper[3] = {};              ///< of the grid; its lower corner is 0
@@ -190,7 +182,7 @@ struct MarchStart {
 /// The kernels of one instruction set. All are safe to call from many threads.
 struct Kernels {
   /// Appends to `hits` the pixels of `bounds` whose ray meets `face` from its outer side.
-  void (*rasterize_face)(const FrameMesh& mesh, const RayGrid& rays, const BinnedFace& face, int tile_column,
+  void (*rasterize_face)(const FrameMesh& mesh, const scene::RayGrid& rays, const BinnedFace& face, int tile_column,
                          int tile_row, std::vector<FaceHit>& hits) = nullptr;
   WalkStatistics (*walk_antiderivative)(const WalkJob& job) = nullptr;
   WalkStatistics (*walk_gentle_antiderivative)(const WalkJob& job) = nullptr;  ///< for `AntiderivativeTable::is_gentle`

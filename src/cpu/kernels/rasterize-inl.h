@@ -44,7 +44,7 @@ HWY_INLINE Float edge_product(const ShearedVertex& a, const ShearedVertex& b, Ma
   return hn::Max(product, constant(0.0f));
 }
 
-inline void rasterize_face(const FrameMesh& mesh, const RayGrid& rays, const BinnedFace& face, int tile_column,
+inline void rasterize_face(const FrameMesh& mesh, const scene::RayGrid& rays, const BinnedFace& face, int tile_column,
                            int tile_row, std::vector<FaceHit>& hits) {
   const BoundaryFace& entry = mesh.faces[face.face];
   const float* vertex[3];

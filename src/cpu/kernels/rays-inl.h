@@ -25,7 +25,7 @@ namespace HWY_NAMESPACE {
 /// Origins and directions of a tile's rays; nothing accumulated yet.
 inline void start_march(const MarchStart& start) {
   MarchRays& tile = *start.tile;
-  const RayGrid& grid = *start.rays;
+  const scene::RayGrid& grid = *start.rays;
   const float* m = start.grid_from_camera;
   const Float zero = constant(0.0f), one = constant(1.0f), never = constant(kNever);
   std::fill_n(tile.has_parallel, 3, false);

@@ -29,7 +29,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
 
-/// A vector of rays in the camera frame (see RayGrid), and the pixels they belong to.
+/// A vector of rays in the camera frame (see scene::RayGrid), and the pixels they belong to.
 struct RayView {
   Float x_offset, x_slope, y_offset, y_slope;
   const std::int32_t* pixels = nullptr;  ///< [kLanes] row * width + column

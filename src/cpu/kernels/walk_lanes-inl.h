@@ -65,7 +65,7 @@ class WalkLanes {
 
   void start_ray(std::size_t lane, std::uint32_t index) {
     const TileRays::Ray& ray = job_.tile->rays[index];
-    const RayGrid& grid = *job_.rays;
+    const scene::RayGrid& grid = *job_.rays;
     lanes_.ray[lane] = index;
     lanes_.next_entry[lane] = ray.begin;
     lanes_.red[lane] = lanes_.green[lane] = lanes_.blue[lane] = 0.0f;

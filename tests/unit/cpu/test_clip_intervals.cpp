@@ -1,6 +1,6 @@
 #include "src/cpu/clip_intervals.h"
 
-#include "src/cpu/frame.h"
+#include "src/scene/camera_frame.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ constexpr double kScale = 2.5;  // world units of a local one
 
 std::array<double, 12> make_test_matrix() {
   const Camera camera{{13.0, -35.0, 36.0}, {10.2, -20.1, 29.5}, {0.1, 0.2, 1.0}, 40.0, {}};
-  return world_from_camera(make_camera_frame(kOrigin, kScale, camera, 64, 48), kOrigin, kScale);
+  return scene::world_from_camera(scene::make_camera_frame(kOrigin, kScale, camera, 64, 48), kOrigin, kScale);
 }
 
 Vector3 world_of(const ClipRay& ray, double z) {

@@ -2,8 +2,8 @@
 
 /// What the tests of src/cpu share: a prepared embedded mesh and its frame for a camera.
 
-#include "src/cpu/eye_cells.h"
-#include "src/cpu/frame.h"
+#include "src/scene/camera_frame.h"
+#include "src/scene/eye_cells.h"
 #include "tetravox/mesh.h"
 
 #include <memory>
@@ -15,20 +15,20 @@ namespace tetravox::cpu {
 inline PreparedMesh make_test_mesh(const std::string& name) { return prepare_mesh(make_builtin(name).mesh); }
 
 struct TestFrame {
-  CameraFrame camera;
+  scene::CameraFrame camera;
   std::vector<float> vertices;
   FrameMesh mesh;
-  Rays rays;
+  scene::Rays rays;
 };
 
 inline TestFrame make_test_frame(const PreparedMesh& mesh, const Camera& camera, int width, int height) {
   TestFrame frame;
-  frame.camera = make_camera_frame(mesh, camera, width, height);
+  frame.camera = scene::make_camera_frame(mesh, camera, width, height);
   frame.vertices.resize(4 * mesh.vertices.size());
-  transform_vertices(mesh, frame.camera, frame.vertices.data());
+  scene::transform_vertices(mesh, frame.camera, frame.vertices.data());
   frame.mesh = {frame.vertices.data(), static_cast<std::uint32_t>(mesh.vertices.size() - 1), mesh.cells.data(), nullptr,
                 mesh.boundary.data()};
-  frame.rays = make_rays(frame.camera, mesh.world_per_local);
+  frame.rays = scene::make_rays(frame.camera, mesh.world_per_local);
   return frame;
 }
 

@@ -345,7 +345,7 @@ class GridLines : public ::testing::TestWithParam<int> {
     planned.plans = plans;
     ShadowOptics optics;
     optics.extinction = &medium_.integral;
-    const LocalFrame local = find_local_frame(grid_);
+    const scene::LocalFrame local = scene::find_local_frame(grid_);
     const ShadowLine line =
         make_shadow_line(local_of(place), {-to_light[0], -to_light[1], -to_light[2]}, local.world_per_local);
     const double z_light =
@@ -357,7 +357,7 @@ class GridLines : public ::testing::TestWithParam<int> {
   }
 
   Vector3 local_of(const Vector3& world) const {
-    const LocalFrame local = find_local_frame(grid_);
+    const scene::LocalFrame local = scene::find_local_frame(grid_);
     Vector3 at = difference(world, local.origin);
     for (double& x : at) x /= local.world_per_local;
     return at;

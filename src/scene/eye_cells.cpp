@@ -1,4 +1,4 @@
-#include "src/cpu/eye_cells.h"
+#include "src/scene/eye_cells.h"
 
 #include "src/support/threads.h"
 
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace tetravox::cpu {
+namespace tetravox::scene {
 namespace {
 
 /// An eye nearer than this to a face of its cell is moved away from it, and by how far; local units, some ulps of
@@ -24,7 +24,7 @@ Vector3 cross(const Vector3& a, const Vector3& b) {
 }
 double length(const Vector3& a) { return std::sqrt(dot(a, a)); }
 
-Vector3 vertex_position(const FrameMesh& mesh, std::uint32_t id) {
+Vector3 vertex_position(const SeenMesh& mesh, std::uint32_t id) {
   const float* v = mesh.vertices + 4 * static_cast<std::size_t>(id);
   return {v[0], v[1], v[2]};
 }
@@ -35,7 +35,7 @@ struct Corner {
   double x = 0.0, y = 0.0, z = 0.0;
 };
 
-Corner make_corner(const FrameMesh& mesh, const CameraFrame& frame, std::uint32_t id) {
+Corner make_corner(const SeenMesh& mesh, const CameraFrame& frame, std::uint32_t id) {
   const Vector3 p = vertex_position(mesh, id) - frame.eye;
   return {id, p[0], p[1], p[2]};
 }
@@ -63,7 +63,7 @@ struct EyeCell {
 };
 
 /// Walks from the cell behind `face` until the eye is passed; what is found holds the eye.
-void walk_to_eye(const FrameMesh& mesh, const CameraFrame& frame, std::array<Corner, 3> face, std::uint32_t cell,
+void walk_to_eye(const SeenMesh& mesh, const CameraFrame& frame, std::array<Corner, 3> face, std::uint32_t cell,
                  std::size_t cell_count, tbb::concurrent_vector<EyeCell>& found) {
   for (std::size_t step = 0; step <= cell_count && cell != kNoCell; ++step) {
     const TetrahedronLinks& links = mesh.cells[cell];
@@ -88,7 +88,7 @@ void walk_to_eye(const FrameMesh& mesh, const CameraFrame& frame, std::array<Cor
 }
 
 /// The cells that hold the eye, in a fixed order, each once.
-std::vector<EyeCell> find_eye_cells(const FrameMesh& mesh, std::span<const BoundaryFace> boundary,
+std::vector<EyeCell> find_eye_cells(const SeenMesh& mesh, std::span<const BoundaryFace> boundary,
                                     std::size_t cell_count, const CameraFrame& frame) {
   tbb::concurrent_vector<EyeCell> found;
   support::parallel_chunks(boundary.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
@@ -129,7 +129,7 @@ double distance_to_triangle(const Vector3& p, const std::array<Vector3, 3>& t, d
 }
 
 /// Moves the eye towards the middle of a tetrahedron.
-void move_eye_into(const FrameMesh& mesh, const Cell& vertices, CameraFrame& frame) {
+void move_eye_into(const SeenMesh& mesh, const Cell& vertices, CameraFrame& frame) {
   Vector3 middle{};
   for (const std::uint32_t id : vertices)
     for (int axis = 0; axis < 3; ++axis) middle[axis] += 0.25 * vertex_position(mesh, id)[axis];
@@ -139,7 +139,7 @@ void move_eye_into(const FrameMesh& mesh, const Cell& vertices, CameraFrame& fra
 }
 
 /// Moves an eye on the skin of the mesh inside.
-void leave_boundary(const FrameMesh& mesh, std::span<const BoundaryFace> boundary, CameraFrame& frame) {
+void leave_boundary(const SeenMesh& mesh, std::span<const BoundaryFace> boundary, CameraFrame& frame) {
   for (const BoundaryFace& face : boundary) {
     std::array<Vector3, 3> corners{};
     for (int k = 0; k < 3; ++k) corners[k] = vertex_position(mesh, face.vertices[k]);
@@ -151,7 +151,7 @@ void leave_boundary(const FrameMesh& mesh, std::span<const BoundaryFace> boundar
 }
 
 /// Whether the eye is nearly on a face of the tetrahedron.
-bool is_on_face(const FrameMesh& mesh, const Cell& vertices, const CameraFrame& frame) {
+bool is_on_face(const SeenMesh& mesh, const Cell& vertices, const CameraFrame& frame) {
   for (int k = 0; k < 4; ++k) {
     const std::array<Vector3, 3> corners{vertex_position(mesh, vertices[(k + 1) % 4]),
                                          vertex_position(mesh, vertices[(k + 2) % 4]),
@@ -163,7 +163,7 @@ bool is_on_face(const FrameMesh& mesh, const Cell& vertices, const CameraFrame& 
 
 }  // namespace
 
-std::vector<BoundaryFace> find_eye_cell_faces(const FrameMesh& mesh, std::span<const BoundaryFace> boundary,
+std::vector<BoundaryFace> find_eye_cell_faces(const SeenMesh& mesh, std::span<const BoundaryFace> boundary,
                                               std::size_t cell_count, CameraFrame& frame) {
   if (frame.is_orthographic) return {};
   leave_boundary(mesh, boundary, frame);
@@ -179,4 +179,4 @@ std::vector<BoundaryFace> find_eye_cell_faces(const FrameMesh& mesh, std::span<c
   return faces;
 }
 
-}  // namespace tetravox::cpu
+}  // namespace tetravox::scene

@@ -1,12 +1,12 @@
 #pragma once
 
-/// What draws one kind of data: behind `Renderer`, which validates for it.
+/// What draws one kind of data with one backend: behind `Renderer`, which validates for it.
 
-#include "src/cpu/kernels/kernels.h"
 #include "src/optics/environment_filter.h"
 #include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -14,11 +14,10 @@
 #include <span>
 #include <vector>
 
-namespace tetravox::cpu {
+namespace tetravox::scene {
 
 /// What frames are drawn with beside camera and settings.
 struct FrameContext {
-  const Kernels& kernels;
   const Progress& progress;
   std::span<const PreparedGrid* const> clip_volumes;  ///< one a shape of the clipping, null where it is no volume
   std::uint64_t clip_number = 0;                      ///< changes with them
@@ -38,20 +37,19 @@ class FrameRenderer {
   virtual void set_colors(std::size_t other, const OpticalFunction& colors) = 0;
   /// Whether a table or colours have been set since the last transfer function.
   virtual bool has_domain() const = 0;
-  /// Draws into `image`, whose pixels are zero. Settings and camera are valid.
+  /// Draws into `image`, whose pixels are zero, and says how in `statistics` (backend, device or instruction set, what
+  /// was counted). Settings and camera are valid.
   virtual void render(const Camera& camera, const RenderSettings& settings, const FrameContext& context, Image& image,
                       RenderStatistics& statistics) = 0;
   /// Bytes that the next frame needs beside what is held.
   virtual std::uint64_t missing_bytes(const RenderSettings& settings) const = 0;
   /// Bytes held for frames and tables.
   virtual std::uint64_t bytes() const = 0;
-  virtual Source source() const = 0;
+  /// Those it draws by, the usual one first.
+  virtual std::vector<Source> sources() const = 0;
   /// World length of the longest ray.
   virtual double diagonal() const = 0;
 };
-
-std::unique_ptr<FrameRenderer> make_mesh_renderer(const PreparedMesh& mesh);
-std::unique_ptr<FrameRenderer> make_grid_renderer(const PreparedGrid& grid);
 
 /// Length of the diagonal of bounds.
 double diagonal_of(const std::array<ValueRange, 3>& bounds);
@@ -75,4 +73,4 @@ class TileProgress {
   std::atomic_flag busy_;
 };
 
-}  // namespace tetravox::cpu
+}  // namespace tetravox::scene

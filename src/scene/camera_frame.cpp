@@ -1,11 +1,11 @@
-#include "src/cpu/frame.h"
+#include "src/scene/camera_frame.h"
 
 #include "src/support/threads.h"
 
 #include <cmath>
 #include <numbers>
 
-namespace tetravox::cpu {
+namespace tetravox::scene {
 namespace {
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -97,4 +97,4 @@ void transform_vertices(const PreparedMesh& mesh, const CameraFrame& frame, floa
   });
 }
 
-}  // namespace tetravox::cpu
+}  // namespace tetravox::scene

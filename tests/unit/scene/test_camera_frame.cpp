@@ -1,4 +1,4 @@
-#include "src/cpu/frame.h"
+#include "src/scene/camera_frame.h"
 
 #include "tests/unit/cpu/test_mesh.h"
 
@@ -13,7 +13,7 @@ const Camera kCamera{{3.0, -5.0, 2.0}, {0.1, 0.2, -0.1}, {0.0, 0.0, 1.0}, 40.0, 
 
 TEST(Frame, AxesAreOrthonormalAndRightHandedOnTheScreen) {
   const PreparedMesh mesh = make_test_mesh("sphere");
-  const CameraFrame frame = make_camera_frame(mesh, kCamera, 64, 48);
+  const scene::CameraFrame frame = scene::make_camera_frame(mesh, kCamera, 64, 48);
   const auto dot = [&](int a, int b) {
     return frame.axes[a][0] * frame.axes[b][0] + frame.axes[a][1] * frame.axes[b][1] +
            frame.axes[a][2] * frame.axes[b][2];

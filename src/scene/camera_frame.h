@@ -6,7 +6,6 @@
 /// that a distant eye costs no precision. Pixel (column, row) looks along x = column_offset + column_slope * z and
 /// likewise y; slopes are 0 for an orthographic camera.
 
-#include "src/cpu/kernels/kernels.h"
 #include "tetravox/camera.h"
 #include "tetravox/image.h"
 #include "tetravox/mesh.h"
@@ -15,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-namespace tetravox::cpu {
+namespace tetravox::scene {
 
 /// The camera in local units.
 struct CameraFrame {
@@ -37,6 +36,18 @@ std::array<double, 12> world_from_camera(const CameraFrame& frame, const Vector3
 /// Turns `Image::depth` from depths of the camera frame into world distances from the eye's plane.
 void measure_depth(const CameraFrame& frame, double world_per_local, Image& image);
 
+/// Rays of a frame. Camera frame: x to the right, y up, z along the view, local length units, origin that of the mesh.
+/// The ray of pixel (column, row) is x = column_offset + column_slope * z, y = row_offset + row_slope * z.
+struct RayGrid {
+  int width = 0, height = 0;
+  const float* column_offset = nullptr;  ///< [width], padded to whole vectors; likewise the other three
+  const float* column_slope = nullptr;
+  const float* row_offset = nullptr;  ///< [height]
+  const float* row_slope = nullptr;
+  float z_near = 0.0f;           ///< rays start at this z: the eye, or the plane of an orthographic camera
+  float world_per_local = 1.0f;  ///< length
+};
+
 /// The arrays that a RayGrid views.
 struct Rays {
   std::vector<float> column_offset, column_slope, row_offset, row_slope;
@@ -48,4 +59,4 @@ Rays make_rays(const CameraFrame& frame, double world_per_local);
 /// Vertices in the camera frame, [vertices][4]; every element is written once.
 void transform_vertices(const PreparedMesh& mesh, const CameraFrame& frame, float* vertices);
 
-}  // namespace tetravox::cpu
+}  // namespace tetravox::scene

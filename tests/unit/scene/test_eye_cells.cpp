@@ -1,4 +1,4 @@
-#include "src/cpu/eye_cells.h"
+#include "src/scene/eye_cells.h"
 
 #include "tests/unit/cpu/test_mesh.h"
 
@@ -9,13 +9,15 @@
 namespace tetravox::cpu {
 namespace {
 
-std::vector<BoundaryFace> find_faces(const PreparedMesh& mesh, const Vector3& eye, CameraFrame* moved = nullptr) {
+std::vector<BoundaryFace> find_faces(const PreparedMesh& mesh, const Vector3& eye,
+                                     scene::CameraFrame* moved = nullptr) {
   Camera camera;
   camera.position = eye;
   camera.focal_point = {eye[0] + 0.3, eye[1] + 1.0, eye[2] - 0.2};
   camera.view_up = {0, 0, 1};
   TestFrame frame = make_test_frame(mesh, camera, 16, 16);
-  std::vector<BoundaryFace> faces = find_eye_cell_faces(frame.mesh, mesh.boundary, mesh.cells.size(), frame.camera);
+  std::vector<BoundaryFace> faces =
+      scene::find_eye_cell_faces(frame.mesh.seen(), mesh.boundary, mesh.cells.size(), frame.camera);
   if (moved) *moved = frame.camera;
   return faces;
 }
@@ -47,7 +49,7 @@ TEST(EyeCells, AnEyeOnAVertexIsMovedIntoACell) {
   const Vertex& v = mesh.vertices[mesh.vertices.size() / 2];
   const Vector3 eye{mesh.origin[0] + v.x * mesh.world_per_local, mesh.origin[1] + v.y * mesh.world_per_local,
                     mesh.origin[2] + v.z * mesh.world_per_local};
-  CameraFrame moved;
+  scene::CameraFrame moved;
   EXPECT_EQ(find_faces(mesh, eye, &moved).size(), 4u);
 }
 

@@ -1,0 +1,53 @@
+#include "apps/tetravox/backend.h"
+
+#include "tetravox/error.h"
+
+#ifdef TETRAVOX_WITH_GL
+#include "tetravox/gl.h"
+#endif
+
+namespace tetravox::tool {
+
+#ifdef TETRAVOX_WITH_GL
+
+namespace {
+
+Renderer make_gl(const PreparedMesh& mesh, const GlOptions& options) { return make_gl_renderer(mesh, options); }
+Renderer make_gl(const PreparedGrid& grid, const GlOptions& options) { return make_gl_renderer(grid, options); }
+
+}  // namespace
+
+Renderer make_renderer(const Body& body, const MethodOptions& method) {
+  return std::visit(
+      [&](const auto& prepared) {
+        return method.use_gl ? make_gl(prepared, {method.gl_device.value_or(-1)}) : Renderer(prepared);
+      },
+      body);
+}
+
+std::vector<std::pair<std::string, std::string>> device_names() {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const GlDevice& device : gl_devices())
+    names.emplace_back(std::to_string(names.size()), device.name + ", OpenGL " + device.version);
+  return names;
+}
+
+#else
+
+Renderer make_renderer(const Body& body, const MethodOptions& method) {
+  if (method.use_gl)
+    throw Error(ErrorCode::kUnsupported,
+                "this tetravox was built without OpenGL: draw with --backend cpu, or build with TETRAVOX_WITH_GL=ON");
+  return std::visit([](const auto& prepared) { return Renderer(prepared); }, body);
+}
+
+std::vector<std::pair<std::string, std::string>> device_names() { return {}; }
+
+#endif
+
+std::string describe_backend(const RenderStatistics& drawn) {
+  if (!drawn.device.empty()) return drawn.device;
+  return drawn.instruction_set + ", " + std::to_string(drawn.threads) + " threads";
+}
+
+}  // namespace tetravox::tool

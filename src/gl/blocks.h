@@ -1,0 +1,27 @@
+#pragma once
+
+/// Uniform blocks: their members stand once, in files that GLSL and C++ both include.
+
+#include <array>
+#include <cstdint>
+
+namespace tetravox::gl {
+
+using uint = std::uint32_t;
+struct vec4 {
+  float x = 0.0f, y = 0.0f, z = 0.0f, w = 0.0f;
+};
+
+// std140 lays rows of four 4-byte scalars out as C++ does.
+struct FrameBlock {
+#include "src/gl/shaders/frame_block.glsl"
+};
+struct WalkBlock {
+#include "src/gl/shaders/walk_block.glsl"
+};
+struct TablesBlock {
+#include "src/gl/shaders/integrators/tables_block.glsl"
+};
+static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 6 * 16);
+
+}  // namespace tetravox::gl

@@ -1,0 +1,82 @@
+#include "src/gl/frame_parts.h"
+
+#include "tetravox/error.h"
+
+#include <string>
+#include <utility>
+
+namespace tetravox::gl {
+namespace {
+
+constexpr GLuint kFrameBinding = 0, kColumnUnit = 0, kRowUnit = 1;
+
+}  // namespace
+
+void require_supported(const RenderSettings& settings) {
+  const std::pair<bool, const char*> unknown[] = {
+      {settings.lighting.is_lit(), "light"},
+      {!settings.surfaces.empty(), "iso-surfaces"},
+      {!settings.clipping.shapes.empty(), "clipping"},
+      {settings.opacity_weight != OpacityWeight::kNone, "opacity weights"},
+      {settings.wants_depth, "depths"},
+  };
+  for (const auto& [is_asked, name] : unknown)
+    if (is_asked)
+      throw Error(ErrorCode::kUnsupported, "the OpenGL backend does not draw " + std::string(name) +
+                                               " yet: leave them out, or draw with --backend cpu");
+}
+
+void note_backend(const Context& context, RenderStatistics& statistics) {
+  statistics.backend = "gl";
+  statistics.device = context.device().name;
+}
+
+void FrameParts::begin(const Limits& limits, const scene::CameraFrame& camera, double world_per_local,
+                       const RenderSettings& settings) {
+  if (settings.width > limits.texture_size || settings.height > limits.texture_size)
+    throw Error(ErrorCode::kUnsupported, "OpenGL: this device draws pictures of at most " +
+                                             std::to_string(limits.texture_size) + " pixels a side: ask for fewer, " +
+                                             "or draw with --backend cpu");
+  const scene::Rays rays = scene::make_rays(camera, world_per_local);
+  const auto upload = [](const std::vector<float>& offsets, const std::vector<float>& slopes, int count,
+                         BufferTexture& texture) {
+    std::vector<float> pairs;
+    for (int i = 0; i < count; ++i) pairs.insert(pairs.end(), {offsets[i], slopes[i]});
+    texture.upload(GL_RG32F, pairs.data(), pairs.size() * sizeof(float));
+  };
+  upload(rays.column_offset, rays.column_slope, settings.width, columns_);
+  upload(rays.row_offset, rays.row_slope, settings.height, rows_);
+  FrameBlock block{};
+  block.width = settings.width;
+  block.height = settings.height;
+  block.z_near = rays.grid.z_near;
+  block.world_per_local = rays.grid.world_per_local;
+  block.eye_x = static_cast<float>(camera.eye[0]);
+  block.eye_y = static_cast<float>(camera.eye[1]);
+  block.eye_z = static_cast<float>(camera.eye[2]);
+  block.pixel_step = static_cast<float>(camera.pixel_step);
+  block.is_orthographic = camera.is_orthographic;
+  block.use_early_ray_termination = settings.use_early_ray_termination;
+  block_.upload(&block, sizeof(block));
+  block_.bind_uniform(kFrameBinding);
+  columns_.bind(kColumnUnit);
+  rows_.bind(kRowUnit);
+  picture_.resize(GL_RGBA32F, settings.width, settings.height);
+  glViewport(0, 0, settings.width, settings.height);
+}
+
+void FrameParts::download(Image& image) const {
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+  glGetTextureImage(picture_.get(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(image.pixels.size() * sizeof(float)),
+                    image.pixels.data());
+}
+
+std::uint64_t FrameParts::bytes() const {
+  return block_.bytes() + columns_.bytes() + rows_.bytes() + (picture_.get() ? picture_.bytes() : 0);
+}
+
+void dispatch_pixels(const RenderSettings& settings) {
+  glDispatchCompute(static_cast<GLuint>(settings.width + 7) / 8, static_cast<GLuint>(settings.height + 7) / 8, 1);
+}
+
+}  // namespace tetravox::gl

@@ -1,0 +1,105 @@
+#include "src/gl/frame_parts.h"
+#include "src/gl/frame_renderers.h"
+#include "src/gl/integrator_tables.h"
+#include "src/gl/mesh_buffers.h"
+#include "src/gl/walk_passes.h"
+#include "src/support/threads.h"
+#include "tetravox/error.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetravox::gl {
+namespace {
+
+/// A segment's colours may err by this part of the picture's tolerance, as on the CPU.
+constexpr float kSegmentsOfTolerance = 40.0f;
+
+class MeshRenderer final : public scene::FrameRenderer {
+ public:
+  MeshRenderer(const PreparedMesh& mesh, std::shared_ptr<Context> context) : mesh_(mesh), context_(std::move(context)) {
+    const auto current = context_->make_current();
+    device_.emplace(mesh, context_->limits());
+    context_->require_no_error("the mesh");
+  }
+  ~MeshRenderer() override {
+    const auto current = context_->make_current();
+    device_.reset();
+  }
+
+  void set_transfer_function(const OpticalFunction& function) override {
+    const auto current = context_->make_current();
+    device_->tables.set_transfer_function(function, {{mesh_.scalar_offset, mesh_.scalar_scale},
+                                                     mesh_.scalar_range,
+                                                     diagonal(),
+                                                     mesh_.association == Association::kCell});
+    has_domain_ = false;
+  }
+  void set_table(const OpticalTable&, const std::vector<std::size_t>&) override { has_domain_ = true; }
+  void set_colors(std::size_t, const OpticalFunction&) override { has_domain_ = true; }
+  bool has_domain() const override { return has_domain_; }
+
+  void render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context, Image& image,
+              RenderStatistics& statistics) override {
+    require_supported(settings);
+    if (has_domain_)
+      throw Error(ErrorCode::kUnsupported,
+                  "the OpenGL backend does not know functions of several variables yet: draw with --backend cpu");
+    const auto current = context_->make_current();
+    Device& device = *device_;
+    const scene::CameraFrame frame = device.mesh.see(camera, settings.width, settings.height);
+    device.frame.begin(context_->limits(), frame, mesh_.world_per_local, settings);
+    device.mesh.bind();
+    device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance);
+    device.walk.draw({device.mesh.describe(), device.frame, settings, mesh_.association == Association::kCell,
+                      context_->limits(), context.progress},
+                     statistics);
+    device.frame.download(image);
+    context_->require_no_error("drawing");
+    note_backend(*context_, statistics);
+  }
+
+  std::uint64_t missing_bytes(const RenderSettings& settings) const override {
+    return static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height) * 4 * sizeof(float);
+  }
+  std::uint64_t bytes() const override {
+    return device_->mesh.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->walk.bytes();
+  }
+  std::vector<Source> sources() const override { return {Source::kWalk}; }
+  double diagonal() const override { return scene::diagonal_of(mesh_.bounds); }
+
+ private:
+  /// What lives on the device, and dies with the context current.
+  struct Device {
+    Device(const PreparedMesh& prepared, const Limits& limits) : mesh(prepared, limits) {}
+    MeshBuffers mesh;
+    FrameParts frame;
+    IntegratorTables tables;
+    WalkPasses walk;
+  };
+
+  const PreparedMesh& mesh_;
+  std::shared_ptr<Context> context_;
+  std::optional<Device> device_;
+  bool has_domain_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<scene::FrameRenderer> make_mesh_renderer(const PreparedMesh& mesh, std::shared_ptr<Context> context) {
+  if (mesh.cells.empty()) throw Error(ErrorCode::kNothingToDraw, "the mesh has no cells to draw");
+  return std::make_unique<MeshRenderer>(mesh, std::move(context));
+}
+
+}  // namespace tetravox::gl
+
+namespace tetravox {
+
+Renderer make_gl_renderer(const PreparedMesh& mesh, const GlOptions& options) {
+  return Renderer(gl::make_mesh_renderer(mesh, gl::Context::open(options)));
+}
+
+}  // namespace tetravox

@@ -1,0 +1,104 @@
+// Walks each ray through the mesh from entry to entry of its sorted list, some steps a pass.
+
+#include "walk.glsl"
+#include "lists.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 0, rgba32f) uniform writeonly image2D picture;
+
+struct Pause {  // what a ray needs to go on in another pass
+  uvec4 id_cell;
+  vec4 sum;
+  float z_front;
+  float scalar_front;
+  float z_checked;
+  uint entry;  // the next one
+};
+layout(std430, binding = 3) buffer Pauses { Pause pauses[]; };  // [height][width]
+
+void resume(Ray ray, Pause pause, inout Walker walker) {
+  walker.id = pause.id_cell.xyz;
+  walker.cell = pause.id_cell.w;
+  walker.sum = pause.sum;
+  walker.z_front = pause.z_front;
+  walker.scalar_front = pause.scalar_front;
+  if (walker.cell == kNoCell) return;
+  for (int k = 0; k < 3; ++k) {
+    vec4 vertex = texelFetch(vertices, int(walker.id[k]));
+    vec2 at = shear(ray, vertex);
+    walker.x[k] = at.x;
+    walker.y[k] = at.y;
+    walker.z[k] = vertex.z;
+    walker.scalar[k] = vertex.w;
+  }
+  walker.weight = max(vec3(walker.x[1] * walker.y[2] - walker.y[1] * walker.x[2],
+                           walker.x[2] * walker.y[0] - walker.y[2] * walker.x[0],
+                           walker.x[0] * walker.y[1] - walker.y[0] * walker.x[1]),
+                      0.0);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (pixel.x >= frame.width || pixel.y >= frame.height) return;
+  uint place = uint(pixel.y * frame.width + pixel.x);
+  Ray ray = ray_of(pixel);
+  Walker walker;
+  walker.cell = kNoCell;
+  walker.sum = kNothingYet;
+  walker.scalar_front = 0.0;
+  uint entry;
+  float z_checked = -1e30;
+  if (walk.is_first_pass != 0) {
+    entry = heads[place];
+    if (entry == kNoEntry) {
+      imageStore(picture, pixel, vec4(0.0));
+      return;
+    }
+    atomicAdd(counters.entered_count, 1u);
+  } else {
+    if (pauses[place].entry == kNoEntry && pauses[place].id_cell.w == kNoCell) return;
+    resume(ray, pauses[place], walker);
+    entry = pauses[place].entry;
+    z_checked = pauses[place].z_checked;
+  }
+  Front front = front_at(walker.scalar_front);
+
+  uint segment_count = 0u;
+  for (int i = 0; i < walk.steps; ++i) {
+    if (walker.cell == kNoCell) {
+      if (entry == kNoEntry) break;
+      enter(ray, entries[entry].face, walker);
+      front = front_at(walker.scalar_front);
+      entry = entries[entry].next;
+      z_checked = -1e30;
+    }
+    walk_cell(ray, walker, front);
+    ++segment_count;
+    if (frame.use_early_ray_termination != 0 && is_settled(walker.sum)) {
+      walker.cell = kNoCell;
+      entry = kNoEntry;
+    }
+  }
+  // A ray that did not get on in a whole pass goes round in circles (damaged meshes).
+  if (walker.cell != kNoCell) {
+    if (walker.z_front <= z_checked) {
+      atomicAdd(counters.stopped_count, 1u);
+      walker.cell = kNoCell;
+    }
+    z_checked = walker.z_front;
+  }
+
+  atomicAdd(counters.segments[place % 64u], segment_count);
+  pauses[place].id_cell = uvec4(walker.id, walker.cell);
+  pauses[place].entry = entry;
+  if (walker.cell == kNoCell && entry == kNoEntry) {
+    imageStore(picture, pixel, premultiplied(walker.sum));
+    return;
+  }
+  pauses[place].sum = walker.sum;
+  pauses[place].z_front = walker.z_front;
+  pauses[place].scalar_front = walker.scalar_front;
+  pauses[place].z_checked = z_checked;
+  atomicAdd(counters.unfinished_count, 1u);
+}
