@@ -67,6 +67,7 @@ void run_list(const ListOptions& options) {
       std::cout << with_title("Sources (--source):", source_names())
                 << with_title("Classifications (--classification):", classification_names())
                 << with_title("Integrators (--integrator):", integrator_names())
+                << with_title("Orders of entries, by OpenGL (--entry-order):", entry_order_names())
                 << with_title("Filters of grids (--filter):", filter_names())
                 << with_title("Gradients (--gradient):", gradient_method_names())
                 << with_title("Shadows (--shadows):", shadow_kind_names())

@@ -70,6 +70,7 @@ void override_method(const MethodOptions& method, RenderSettings& settings) {
   if (method.classification && classification_of(settings.integrator) != *method.classification)
     settings.integrator = integrator_of(*method.classification);
   settings.integrator = method.integrator.value_or(settings.integrator);
+  settings.entry_order = method.entry_order.value_or(settings.entry_order);
   settings.filter = method.filter.value_or(settings.filter);
   settings.samples = method.samples.value_or(settings.samples);
   settings.samples_per_voxel = method.samples_per_voxel.value_or(settings.samples_per_voxel);
@@ -93,6 +94,9 @@ std::vector<std::string> check_method(const MethodOptions& method, const RenderS
           method.classification ? "--classification pre" : "--integrator pre", "integrator 'pre'");
 
   std::vector<std::string> lines;
+  if (!method.use_gl && (method.entry_order || method.gl_device))
+    lines.push_back(std::string(method.entry_order ? "--entry-order" : "--gl-device") +
+                    " changes nothing: it is for --backend gl");
   const std::string integrator = name_of(settings.integrator);
   if (method.samples && settings.integrator != Integrator::kPost)
     lines.push_back("--samples changes nothing: it is for --integrator post, and this picture is drawn by " +

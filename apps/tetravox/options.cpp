@@ -161,6 +161,8 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.use_gl, parse_backend));
   add(app, "--gl-device", "N", "Device that draws (tetravox list devices; default: the first that is no software)",
       store(method.gl_device, integer(0, kMostDevices)));
+  add(app, "--entry-order", "NAME", "Meshes, gl: how entries of rays are put in order: lists (default), peeling",
+      store(method.entry_order, named(entry_order_from_name)));
   add(app, "--source", "NAME", "Where segments come from (tetravox list methods)",
       store(method.source, named(source_from_name)));
   add(app, "--integrator", "NAME", "What turns a segment into colour (tetravox list methods)",

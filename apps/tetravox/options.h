@@ -74,6 +74,7 @@ enum class Classification {
 struct MethodOptions {
   bool use_gl = false;
   std::optional<int> gl_device;
+  std::optional<EntryOrder> entry_order;
   std::optional<Source> source;
   std::optional<Classification> classification;
   std::optional<Integrator> integrator;

@@ -47,6 +47,12 @@ enum class OpacityWeight {
   kGradient           ///< in space: the magnitude of the gradient (Levoy 1988)
 };
 
+/// How the places where rays enter a mesh are put in order, by OpenGL.
+enum class EntryOrder {
+  kLists,   ///< lists of each pixel, sorted (Yang, Hensley, Gruen, Thibieroz 2010; default)
+  kPeeling  ///< depth peeling of the boundary, a layer a pass (Everitt 2001; Espinha and Celes 2005)
+};
+
 inline constexpr int kLargestResolution = 16384;
 inline constexpr double kSmallestTolerance = 1e-7;
 
@@ -59,6 +65,7 @@ struct RenderSettings {
   int samples = 8;                 ///< samples a segment (post), in [1, 4096]
   Filter filter;                   ///< how a grid's field is reconstructed
   double samples_per_voxel = 0.0;  ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
+  EntryOrder entry_order = EntryOrder::kLists;  ///< meshes, gl
   Lighting lighting;
   std::vector<Isosurface> surfaces;
   Clipping clipping;
@@ -89,14 +96,17 @@ struct RenderStatistics {
 /// "post", "pre"), and back.
 std::string name_of(Source source);
 std::string name_of(Integrator integrator);
+std::string name_of(EntryOrder order);      ///< "lists", "peeling"
 std::string name_of(OpacityWeight weight);  ///< "none", "scalar-difference", "gradient"
 /// @throws Error (kInvalidArgument) that lists the names there are.
 Source source_from_name(const std::string& name);
 Integrator integrator_from_name(const std::string& name);
+EntryOrder entry_order_from_name(const std::string& name);
 OpacityWeight opacity_weight_from_name(const std::string& name);
 /// Names, one-line descriptions with the paper.
 std::vector<std::pair<std::string, std::string>> source_names();
 std::vector<std::pair<std::string, std::string>> integrator_names();
+std::vector<std::pair<std::string, std::string>> entry_order_names();
 std::vector<std::pair<std::string, std::string>> opacity_weight_names();
 
 /// The instruction sets compiled in and supported by this machine, best first.

@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 
 namespace tetravox::gl {
 namespace {
 
-constexpr GLuint kWalkBinding = 2;                                                             // uniform block
-constexpr GLuint kCounterBinding = 0, kEntryBinding = 1, kHeadBinding = 2, kPauseBinding = 3;  // storage blocks
-constexpr GLuint kPictureUnit = 0;                                                             // image
+constexpr GLuint kWalkBinding = 2;  // uniform block
+constexpr GLuint kCounterBinding = 0, kEntryBinding = 1, kHeadBinding = 2, kPauseBinding = 3,
+                 kPeeledBinding = 4;  // storage blocks
+constexpr GLuint kFrontFaceUnit = 10;
+constexpr GLuint kPictureUnit = 0;  // image
 
 /// Steps of a ray in one pass: a fraction of a second on slow devices, which drivers with a watchdog allow.
 constexpr int kSteps = 4096;
@@ -27,6 +30,17 @@ struct EntryNode {
   float depth;
 };
 constexpr std::size_t kPauseBytes = 48;
+struct PeeledFace {
+  float key;
+  std::uint32_t face;
+};
+
+/// Entries a pixel that there is room for at first.
+constexpr std::size_t kFirstEntries = 4;
+
+std::size_t pixels_of(const RenderSettings& settings) {
+  return static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
+}
 
 template <class Find>
 const ProgramName& find_program(std::map<std::string, ProgramName>& programs, const std::string& key,
@@ -42,11 +56,16 @@ std::vector<ShaderRecipe> recipe_of_lists() {
   return {{ShaderStage::kVertex, "boundary.vert", {}, {}}, {ShaderStage::kFragment, "boundary_list.frag", {}, {}}};
 }
 
+std::vector<ShaderRecipe> recipe_of_peeling() {
+  return {{ShaderStage::kVertex, "boundary.vert", {}, {}}, {ShaderStage::kFragment, "boundary_peel.frag", {}, {}}};
+}
+
 ShaderRecipe recipe_of_sorting() { return {ShaderStage::kCompute, "sort_lists.comp", {}, {}}; }
 
-ShaderRecipe recipe_of_walk(Integrator integrator, bool has_cell_data) {
-  ShaderRecipe recipe{ShaderStage::kCompute, "walk_lists.comp", {}, {}};
+ShaderRecipe recipe_of_walk(Integrator integrator, bool has_cell_data, EntryOrder order) {
+  ShaderRecipe recipe{ShaderStage::kCompute, "walk.comp", {}, {}};
   if (has_cell_data) recipe.defines.emplace_back("CELL_DATA", "1");
+  if (order == EntryOrder::kPeeling) recipe.defines.emplace_back("PEELING", "1");
   recipe.includes.emplace_back("integrator.glsl", integrator_file(integrator, has_cell_data));
   return recipe;
 }
@@ -56,68 +75,104 @@ void WalkPasses::upload(const WalkBlock& block) {
   block_.bind_uniform(kWalkBinding);
 }
 
-/// Fills the lists of the pixels; how many entries they hold.
-std::uint64_t WalkPasses::collect_entries(const WalkFrame& frame, WalkBlock& block) {
-  const auto pixels = static_cast<std::size_t>(frame.settings.width) * static_cast<std::size_t>(frame.settings.height);
+/// Makes room for a frame, and binds what all of its passes share.
+void WalkPasses::prepare(const WalkFrame& frame) {
+  const std::size_t pixels = pixels_of(frame.settings);
   if (!no_attributes_) {
-    GLuint name = 0;
-    glCreateVertexArrays(1, &name);
-    no_attributes_ = VertexArrayName(name);
-    glCreateFramebuffers(1, &name);
-    no_target_ = FramebufferName(name);
+    GLuint names[3] = {};
+    glCreateVertexArrays(1, &names[0]);
+    no_attributes_ = VertexArrayName(names[0]);
+    glCreateFramebuffers(2, &names[1]);
+    no_target_ = FramebufferName(names[1]);
+    peel_target_ = FramebufferName(names[2]);
   }
+  counters_.reserve(sizeof(Counters));
+  counters_.clear_to_zero(sizeof(Counters));
+  counters_.bind_storage(kCounterBinding);
+  pauses_.reserve(pixels * kPauseBytes);
+  pauses_.bind_storage(kPauseBinding);
+  entries_.reserve(sizeof(EntryNode));
+  entries_.bind_storage(kEntryBinding);
+  heads_.reserve(sizeof(std::uint32_t));
+  heads_.bind_storage(kHeadBinding);
+  frame.parts.picture().bind_image(kPictureUnit, GL_WRITE_ONLY);
+  glBindVertexArray(no_attributes_.get());
+}
+
+/// Fills and sorts the lists of the pixels.
+void WalkPasses::collect_entries(const WalkFrame& frame, WalkBlock& block) {
+  const std::size_t pixels = pixels_of(frame.settings);
   glNamedFramebufferParameteri(no_target_.get(), GL_FRAMEBUFFER_DEFAULT_WIDTH, frame.settings.width);
   glNamedFramebufferParameteri(no_target_.get(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, frame.settings.height);
   heads_.reserve(pixels * sizeof(std::uint32_t));
-  counters_.reserve(sizeof(Counters));
-  entries_.reserve(4 * pixels * sizeof(EntryNode));
+  heads_.bind_storage(kHeadBinding);
+  entries_.reserve(kFirstEntries * pixels * sizeof(EntryNode));
   const ProgramName& program = find_program(programs_, "lists", [] { return recipe_of_lists(); });
-  for (;;) {
+  for (Counters counters;;) {
     constexpr GLuint kNoEntry = 0xFFFFFFFFu;
     glClearNamedBufferData(heads_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &kNoEntry);
     counters_.clear_to_zero(sizeof(Counters));
-    heads_.bind_storage(kHeadBinding);
-    counters_.bind_storage(kCounterBinding);
     entries_.bind_storage(kEntryBinding);
     block.node_count = static_cast<uint>(entries_.bytes() / sizeof(EntryNode));
     upload(block);
     glUseProgram(program.get());
-    glBindVertexArray(no_attributes_.get());
     glBindFramebuffer(GL_FRAMEBUFFER, no_target_.get());
     glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * block.face_count));
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    Counters counters;
     counters_.download(&counters, sizeof(counters));
-    if (counters.entry_count <= block.node_count) return counters.entry_count;
+    if (counters.entry_count <= block.node_count) break;
     const std::uint64_t wanted = counters.entry_count * std::uint64_t{sizeof(EntryNode)};
     if (wanted > frame.limits.storage_bytes)
-      throw Error(ErrorCode::kOutOfMemory, "OpenGL: the rays of this picture enter the mesh " +
-                                               std::to_string(counters.entry_count) +
-                                               " times, more than this device keeps: ask for fewer pixels, or draw "
-                                               "with --backend cpu");
+      throw Error(ErrorCode::kOutOfMemory,
+                  "OpenGL: the rays of this picture enter the mesh " + std::to_string(counters.entry_count) +
+                      " times, more than this device keeps: use --entry-order peeling, or draw with --backend cpu");
     entries_.reserve(wanted);
   }
-}
-
-void WalkPasses::draw(const WalkFrame& frame, RenderStatistics& statistics) {
-  const auto pixels = static_cast<std::size_t>(frame.settings.width) * static_cast<std::size_t>(frame.settings.height);
-  WalkBlock block = frame.block;
-  collect_entries(frame, block);
   glUseProgram(find_program(programs_, "sort", [] { return std::vector{recipe_of_sorting()}; }).get());
   dispatch_pixels(frame.settings);
+}
 
-  const Integrator integrator = frame.settings.integrator;
-  const std::string key = frame.has_cell_data ? "cells" : name_of(integrator);
+/// Finds the next face that each ray enters through.
+void WalkPasses::peel_layer(const WalkFrame& frame, const WalkBlock& block) {
+  const std::size_t bytes = pixels_of(frame.settings) * sizeof(PeeledFace);
+  if (block.is_first_layer) {
+    front_faces_.resize(GL_R32UI, frame.settings.width, frame.settings.height);
+    peel_depths_.resize(GL_DEPTH_COMPONENT32F, frame.settings.width, frame.settings.height);
+    glNamedFramebufferTexture(peel_target_.get(), GL_COLOR_ATTACHMENT0, front_faces_.get(), 0);
+    glNamedFramebufferTexture(peel_target_.get(), GL_DEPTH_ATTACHMENT, peel_depths_.get(), 0);
+    peeled_.reserve(bytes);
+    constexpr GLfloat kBeforeAll = -1.0f;
+    glClearNamedBufferSubData(peeled_.get(), GL_R32F, 0, static_cast<GLsizeiptr>(bytes), GL_RED, GL_FLOAT, &kBeforeAll);
+    peeled_.bind_storage(kPeeledBinding);
+    front_faces_.bind_texture(kFrontFaceUnit);
+  }
+  upload(block);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  constexpr GLuint kNoFace[4] = {0xFFFFFFFFu};
+  constexpr GLfloat kFar = 1.0f;
+  glBindFramebuffer(GL_FRAMEBUFFER, peel_target_.get());
+  glClearNamedFramebufferuiv(peel_target_.get(), GL_COLOR, 0, kNoFace);
+  glClearNamedFramebufferfv(peel_target_.get(), GL_DEPTH, 0, &kFar);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glUseProgram(find_program(programs_, "peeling", [] { return recipe_of_peeling(); }).get());
+  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * block.face_count));
+  glDisable(GL_DEPTH_TEST);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+/// Takes all rays from the entries at hand to their ends; how many set out.
+std::uint64_t WalkPasses::walk(const WalkFrame& frame, WalkBlock& block, RenderStatistics& statistics) {
+  const auto& [integrator, order] = std::pair{frame.settings.integrator, frame.settings.entry_order};
+  const std::string key = (frame.has_cell_data ? "cells" : name_of(integrator)) + " " + name_of(order);
   const ProgramName& program =
-      find_program(programs_, key, [&] { return std::vector{recipe_of_walk(integrator, frame.has_cell_data)}; });
-  pauses_.reserve(pixels * kPauseBytes);
-  pauses_.bind_storage(kPauseBinding);
-  frame.parts.picture().bind_image(kPictureUnit, GL_WRITE_ONLY);
+      find_program(programs_, key, [&] { return std::vector{recipe_of_walk(integrator, frame.has_cell_data, order)}; });
+  std::uint64_t entered = 0;
   block.steps = kSteps;
   block.is_first_pass = 1;
-  Counters counters;
-  do {
+  for (Counters counters;;) {
     upload(block);
+    counters_.clear_to_zero(sizeof(Counters));
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     glUseProgram(program.get());
     dispatch_pixels(frame.settings);
@@ -125,15 +180,33 @@ void WalkPasses::draw(const WalkFrame& frame, RenderStatistics& statistics) {
     counters_.download(&counters, sizeof(counters));
     statistics.segments += std::accumulate(counters.segments.begin(), counters.segments.end(), std::uint64_t{0});
     statistics.stopped_rays += counters.stopped_count;
-    if (block.is_first_pass) statistics.rays = counters.entered_count;
+    entered += counters.entered_count;
     block.is_first_pass = 0;
-    counters_.clear_to_zero(sizeof(Counters));
     support::throw_if_cancelled(frame.progress);
-  } while (counters.unfinished_count > 0);
+    if (counters.unfinished_count == 0) return entered;
+  }
+}
+
+void WalkPasses::draw(const WalkFrame& frame, RenderStatistics& statistics) {
+  prepare(frame);
+  WalkBlock block = frame.block;
+  block.is_first_layer = 1;
+  if (frame.settings.entry_order == EntryOrder::kLists) {
+    collect_entries(frame, block);
+    statistics.rays = walk(frame, block, statistics);
+    return;
+  }
+  for (bool is_any_left = true; is_any_left; block.is_first_layer = 0) {
+    peel_layer(frame, block);
+    const std::uint64_t entered = walk(frame, block, statistics);
+    if (block.is_first_layer) statistics.rays = entered;
+    is_any_left = entered > 0;
+  }
 }
 
 std::uint64_t WalkPasses::bytes() const {
-  return block_.bytes() + counters_.bytes() + entries_.bytes() + heads_.bytes() + pauses_.bytes();
+  return block_.bytes() + counters_.bytes() + entries_.bytes() + heads_.bytes() + pauses_.bytes() + peeled_.bytes() +
+         front_faces_.bytes() + peel_depths_.bytes();
 }
 
 }  // namespace tetravox::gl

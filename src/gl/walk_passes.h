@@ -29,8 +29,9 @@ struct WalkFrame {
 
 /// The shader programs of a frame by `walk`.
 std::vector<ShaderRecipe> recipe_of_lists();
+std::vector<ShaderRecipe> recipe_of_peeling();
 ShaderRecipe recipe_of_sorting();
-ShaderRecipe recipe_of_walk(Integrator integrator, bool has_cell_data);
+ShaderRecipe recipe_of_walk(Integrator integrator, bool has_cell_data, EntryOrder order);
 
 /// With the context current.
 class WalkPasses {
@@ -40,14 +41,17 @@ class WalkPasses {
   std::uint64_t bytes() const;
 
  private:
-  std::uint64_t collect_entries(const WalkFrame& frame, WalkBlock& block);
+  void prepare(const WalkFrame& frame);
+  void collect_entries(const WalkFrame& frame, WalkBlock& block);
+  void peel_layer(const WalkFrame& frame, const WalkBlock& block);
+  std::uint64_t walk(const WalkFrame& frame, WalkBlock& block, RenderStatistics& statistics);
   void upload(const WalkBlock& block);
 
   std::map<std::string, ProgramName> programs_;
   VertexArrayName no_attributes_;
-  FramebufferName no_target_;
-  int target_width_ = 0, target_height_ = 0;
-  Buffer block_, counters_, entries_, heads_, pauses_;
+  FramebufferName no_target_, peel_target_;
+  Picture front_faces_, peel_depths_;
+  Buffer block_, counters_, entries_, heads_, pauses_, peeled_;
 };
 
 }  // namespace tetravox::gl

@@ -31,6 +31,10 @@ constexpr std::array<Name<Integrator>, 4> kIntegrators{
      {Integrator::kPre, "pre",
       "pre-classification: colours and extinctions at the values, interpolated; for comparison"}}};
 
+constexpr std::array<Name<EntryOrder>, 2> kEntryOrders{
+    {{EntryOrder::kLists, "lists", "a sorted list for each pixel (Yang, Hensley, Gruen, Thibieroz 2010)"},
+     {EntryOrder::kPeeling, "peeling", "depth peeling of the boundary (Everitt 2001; Espinha and Celes 2005)"}}};
+
 constexpr std::array<Name<OpacityWeight>, 3> kOpacityWeights{
     {{OpacityWeight::kNone, "none", "extinction as the function says"},
      {OpacityWeight::kScalarDifference, "scalar-difference",
@@ -96,10 +100,14 @@ Source source_from_name(const std::string& name) { return enumerator_from_name(k
 Integrator integrator_from_name(const std::string& name) {
   return enumerator_from_name(kIntegrators, name, "integrator");
 }
+std::string name_of(EntryOrder order) { return name_of_enumerator(kEntryOrders, order); }
 std::string name_of(OpacityWeight weight) { return name_of_enumerator(kOpacityWeights, weight); }
 std::string name_of(GradientMethod method) { return name_of_enumerator(kGradientMethods, method); }
 std::string name_of(LightKind kind) { return name_of_enumerator(kLightKinds, kind); }
 std::string name_of(ShadowKind kind) { return name_of_enumerator(kShadowKinds, kind); }
+EntryOrder entry_order_from_name(const std::string& name) {
+  return enumerator_from_name(kEntryOrders, name, "order of entries");
+}
 OpacityWeight opacity_weight_from_name(const std::string& name) {
   return enumerator_from_name(kOpacityWeights, name, "opacity weight");
 }
@@ -114,6 +122,7 @@ ShadowKind shadow_kind_from_name(const std::string& name) {
 }
 std::vector<std::pair<std::string, std::string>> source_names() { return list_names(kSources); }
 std::vector<std::pair<std::string, std::string>> integrator_names() { return list_names(kIntegrators); }
+std::vector<std::pair<std::string, std::string>> entry_order_names() { return list_names(kEntryOrders); }
 std::vector<std::pair<std::string, std::string>> opacity_weight_names() { return list_names(kOpacityWeights); }
 std::vector<std::pair<std::string, std::string>> gradient_method_names() { return list_names(kGradientMethods); }
 std::vector<std::pair<std::string, std::string>> shadow_kind_names() { return list_names(kShadowKinds); }

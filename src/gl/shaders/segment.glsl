@@ -3,7 +3,7 @@
 struct Segment {
   float scalar_front;  // stored scalars
   float scalar_back;
-  float length;        // world
+  float world_length;        // world
 };
 
 // Premultiplied colour so far, and transmittance, of one ray.

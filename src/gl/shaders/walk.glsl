@@ -69,7 +69,7 @@ void walk_cell(Ray ray, inout Walker walker, inout Front front) {
     // Of what lies behind the eye nothing is integrated.
     float part = z_back > frame.z_near ? (z_back - frame.z_near) / (z_back - walker.z_front) : 0.0;
     segment.scalar_front = mix(scalar_back, walker.scalar_front, part);
-    segment.length *= part;
+    segment.world_length *= part;
     front = front_at(segment.scalar_front);
   }
   integrate(segment, front, walker.sum);

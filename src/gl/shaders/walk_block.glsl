@@ -5,5 +5,5 @@ uint first_eye_face;
 uint node_count;      // of lists: entries that there is room for
 int steps;            // of a ray in one pass, at most
 int is_first_pass;
+int is_first_layer;   // of peeled faces
 int unused_0;
-int unused_1;

@@ -2,8 +2,8 @@
 
 /// What the tests of src/cpu share: a prepared embedded mesh and its frame for a camera.
 
+#include "src/cpu/kernels/kernels.h"
 #include "src/scene/camera_frame.h"
-#include "src/scene/eye_cells.h"
 #include "tetravox/mesh.h"
 
 #include <memory>

@@ -98,9 +98,9 @@ void integrate_exactly(Segment segment, inout vec4 sum) {
     vec3 change = abs(eval_interval(walk.interval, walk.scalar).yzw - eval_interval(walk.interval, goal).yzw);
     float most = max(max(change.x, max(change.y, change.z)), 1e-6);
     LinearPiece p = next_piece(segment, sqrt(tables.split_threshold / most), walk);
-    float depth = 0.5 * (p.front.x + p.back.x) * p.length;
+    float depth = 0.5 * (p.front.x + p.back.x) * p.world_length;
     vec3 emission = (p.front.x * (2.0 * p.front.yzw + p.back.yzw) + p.back.x * (2.0 * p.back.yzw + p.front.yzw)) *
-                    (p.length / 6.0);
+                    (p.world_length / 6.0);
     composite_piece(depth, emission, sum);
   }
 }
@@ -109,7 +109,7 @@ void integrate(Segment segment, inout Front front, inout vec4 sum) {
   Front before = front;
   Front back = front_at(segment.scalar_back);
   front = back;
-  vec4 integrals = integrate_between(before, back, segment.length);
+  vec4 integrals = integrate_between(before, back, segment.world_length);
   float nodes = abs(back.position - before.position);
   bool beyond = tables.covers_data == 0 && (is_outside(before.position) || is_outside(back.position));
   bool coarse = tables.has_coarse != 0 && (is_coarse(before.position) || is_coarse(back.position));
@@ -125,7 +125,7 @@ void integrate(Segment segment, inout Front front, inout vec4 sum) {
   if (coarse)
     integrate_exactly(segment, sum);
   else if (is_doubtful)
-    integrate_pieces(segment.length, before, back, sum);
+    integrate_pieces(segment.world_length, before, back, sum);
   else
     composite_piece(integrals.x, integrals.yzw, sum);
 }

@@ -50,13 +50,13 @@ struct LinearWalk {
 struct LinearPiece {
   vec4 front;  // extinction, colour
   vec4 back;
-  float length;
+  float world_length;
 };
 
 LinearWalk begin_linear_walk(Segment segment) {
   bool rises = segment.scalar_back >= segment.scalar_front;
   return LinearWalk(find_front_interval(segment.scalar_front, rises), 0.0, segment.scalar_front,
-                    !(segment.length > 0.0));
+                    !(segment.world_length > 0.0));
 }
 
 // Where the next piece would end, at the next control point or the segment's end: place, scalar; and if it is the end.
@@ -77,7 +77,7 @@ LinearPiece next_piece(Segment segment, float deepest, inout LinearWalk walk) {
   bool is_end;
   find_goal(segment, walk, goal_t, goal, is_end);
   vec4 front = eval_interval(walk.interval, walk.scalar), back = eval_interval(walk.interval, goal);
-  float reach = deepest / max(max(front.x, back.x) * segment.length, 1e-30);
+  float reach = deepest / max(max(front.x, back.x) * segment.world_length, 1e-30);
   // A step too small for float would never end: then go all the way.
   bool arrives = goal_t <= walk.t + reach || walk.t + reach <= walk.t;
   float next_t = goal_t, next = goal;
@@ -86,7 +86,7 @@ LinearPiece next_piece(Segment segment, float deepest, inout LinearWalk walk) {
     next = segment.scalar_front + next_t * (segment.scalar_back - segment.scalar_front);
     back = eval_interval(walk.interval, next);
   }
-  LinearPiece piece = LinearPiece(front, back, segment.length * (next_t - walk.t));
+  LinearPiece piece = LinearPiece(front, back, segment.world_length * (next_t - walk.t));
   walk.is_done = arrives && is_end;
   if (arrives && !is_end) walk.interval += segment.scalar_back >= segment.scalar_front ? 1 : -1;
   walk.t = next_t;

@@ -19,7 +19,7 @@ float look_up_absorbed(float front, float back) {
 
 // C = c0 (1 - psi) + c1 (psi - exp(-tau)), written with 1 - psi and alpha so that nothing cancels.
 void composite_linear(LinearPiece piece, inout vec4 sum) {
-  vec2 depths = vec2(piece.front.x, piece.back.x) * piece.length;
+  vec2 depths = vec2(piece.front.x, piece.back.x) * piece.world_length;
   float depth = 0.5 * (depths.x + depths.y);
   float alpha = depth * absorbed_ratio(depth);
   vec3 color = (piece.front.yzw - piece.back.yzw) * look_up_absorbed(depths.x, depths.y) + piece.back.yzw * alpha;

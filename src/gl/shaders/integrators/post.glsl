@@ -7,6 +7,6 @@ void integrate(Segment segment, inout Front front, inout vec4 sum) {
   float share = 1.0 / float(tables.samples);
   for (int i = 0; i < tables.samples; ++i) {
     float scalar = mix(segment.scalar_front, segment.scalar_back, (float(i) + 0.5) * share);
-    composite_uniform(eval_optics(scalar), segment.length * share, sum);
+    composite_uniform(eval_optics(scalar), segment.world_length * share, sum);
   }
 }

@@ -1,4 +1,5 @@
-// Walks each ray through the mesh from entry to entry of its sorted list, some steps a pass.
+// Walks each ray through the mesh from entry to entry, some steps a pass: of its sorted list, or with PEELING of the one
+// face that has been peeled.
 
 #include "walk.glsl"
 #include "lists.glsl"
@@ -16,6 +17,26 @@ struct Pause {  // what a ray needs to go on in another pass
   uint entry;  // the next one
 };
 layout(std430, binding = 3) buffer Pauses { Pause pauses[]; };  // [height][width]
+
+#ifdef PEELING
+#include "peeling.glsl"
+
+layout(binding = 10) uniform usampler2D front_faces;  // kNoEntry: none
+
+uint first_entry(ivec2 pixel) { return texelFetch(front_faces, pixel, 0).x; }
+uint face_of(uint entry) { return entry; }
+uint entry_behind(uint entry) { return kNoEntry; }
+
+// Notes what the next layer lies behind.
+void note_entered(uint place, uint face, float depth) { peeled[place] = Peeled(key_of(face, depth), face); }
+void end_ray(uint place) { peeled[place].key = kBehindAll; }
+#else
+uint first_entry(ivec2 pixel) { return heads[pixel.y * frame.width + pixel.x]; }
+uint face_of(uint entry) { return entries[entry].face; }
+uint entry_behind(uint entry) { return entries[entry].next; }
+void note_entered(uint place, uint face, float depth) {}
+void end_ray(uint place) {}
+#endif
 
 void resume(Ray ray, Pause pause, inout Walker walker) {
   walker.id = pause.id_cell.xyz;
@@ -50,11 +71,15 @@ void main() {
   uint entry;
   float z_checked = -1e30;
   if (walk.is_first_pass != 0) {
-    entry = heads[place];
-    if (entry == kNoEntry) {
+    entry = first_entry(pixel);
+    if (walk.is_first_layer != 0)
       imageStore(picture, pixel, vec4(0.0));
-      return;
-    }
+    else
+      walker.sum = pauses[place].sum;
+    pauses[place].id_cell.w = kNoCell;
+    pauses[place].entry = kNoEntry;
+    if (walk.is_first_layer != 0) pauses[place].sum = kNothingYet;
+    if (entry == kNoEntry) return;
     atomicAdd(counters.entered_count, 1u);
   } else {
     if (pauses[place].entry == kNoEntry && pauses[place].id_cell.w == kNoCell) return;
@@ -68,9 +93,11 @@ void main() {
   for (int i = 0; i < walk.steps; ++i) {
     if (walker.cell == kNoCell) {
       if (entry == kNoEntry) break;
-      enter(ray, entries[entry].face, walker);
+      uint face = face_of(entry);
+      enter(ray, face, walker);
+      note_entered(place, face, walker.z_front);
       front = front_at(walker.scalar_front);
-      entry = entries[entry].next;
+      entry = entry_behind(entry);
       z_checked = -1e30;
     }
     walk_cell(ray, walker, front);
@@ -78,6 +105,7 @@ void main() {
     if (frame.use_early_ray_termination != 0 && is_settled(walker.sum)) {
       walker.cell = kNoCell;
       entry = kNoEntry;
+      end_ray(place);
     }
   }
   // A ray that did not get on in a whole pass goes round in circles (damaged meshes).
@@ -92,11 +120,11 @@ void main() {
   atomicAdd(counters.segments[place % 64u], segment_count);
   pauses[place].id_cell = uvec4(walker.id, walker.cell);
   pauses[place].entry = entry;
+  pauses[place].sum = walker.sum;
   if (walker.cell == kNoCell && entry == kNoEntry) {
     imageStore(picture, pixel, premultiplied(walker.sum));
     return;
   }
-  pauses[place].sum = walker.sum;
   pauses[place].z_front = walker.z_front;
   pauses[place].scalar_front = walker.scalar_front;
   pauses[place].z_checked = z_checked;

@@ -1,0 +1,142 @@
+/// OpenGL draws the pictures of the CPU: meshes.
+
+#include "tests/common/gl.h"
+#include "tests/conformance/scenes.h"
+#include "tetravox/error.h"
+
+namespace tetravox::conformance {
+namespace {
+
+/// How far the pictures of two backends may be apart: rounding, and pieces cut a little differently for it.
+constexpr double kMostApart = 5e-4, kMostApartRms = 5e-5;
+
+Subject make_any_subject(const std::string& name) {
+  return name == "cell_data" ? make_subject(make_cell_data_mesh()) : make_subject(name);
+}
+
+class GlMeshes : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(GlMeshes, PicturesAreThoseOfTheCpu) {
+  TETRAVOX_REQUIRE_GL();
+  const Subject scene = make_any_subject(GetParam());
+  Renderer gl = make_gl_renderer(scene.mesh), cpu(scene.mesh);
+  for (const auto& [camera_name, camera] : scene.cameras)
+    for (const auto& [function_name, function] : scene.functions) {
+      gl.set_transfer_function(function);
+      cpu.set_transfer_function(function);
+      for (const Integrator integrator : tests::kAllIntegrators)
+        for (const EntryOrder order : {EntryOrder::kLists, EntryOrder::kPeeling}) {
+          RenderSettings settings = tests::make_settings(integrator, 77, 53);
+          settings.entry_order = order;
+          RenderStatistics drawn, expected;
+          const Image image = gl.render(camera, settings, &drawn);
+          const Image same = cpu.render(camera, settings, &expected);
+          const std::string where =
+              camera_name + " " + function_name + " " + name_of(integrator) + " " + name_of(order);
+          EXPECT_TRUE(tests::is_valid_picture(image)) << where;
+          EXPECT_TRUE(tests::images_agree(image, same, kMostApart, kMostApartRms)) << where;
+          EXPECT_EQ(drawn.rays, expected.rays) << where;
+          EXPECT_EQ(drawn.stopped_rays, 0u) << where;
+          EXPECT_EQ(drawn.backend, "gl");
+          EXPECT_FALSE(drawn.device.empty());
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, GlMeshes,
+                         ::testing::Values("sphere", "buckyball?cells=20000", "duct?cells=4000", "cell_data"),
+                         [](const auto& test) { return test.param.substr(0, test.param.find('?')); });
+
+TEST(GlMesh, SegmentsAreThoseOfTheCpu) {
+  TETRAVOX_REQUIRE_GL();
+  const Subject scene = make_subject("duct");
+  RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 120, 90);
+  settings.use_early_ray_termination = false;
+  Renderer gl = make_gl_renderer(scene.mesh);
+  gl.set_transfer_function(scene.function("smooth"));
+  RenderStatistics drawn, expected;
+  gl.render(scene.camera("outside"), settings, &drawn);
+  tests::render_with(scene.mesh, scene.function("smooth"), scene.camera("outside"), settings, expected);
+  EXPECT_EQ(drawn.segments, expected.segments);
+}
+
+TEST(GlMesh, FramesDoNotDependOnThoseBefore) {
+  TETRAVOX_REQUIRE_GL();
+  const Subject scene = make_subject("buckyball?cells=20000");
+  Renderer gl = make_gl_renderer(scene.mesh);
+  gl.set_transfer_function(scene.function("random"));
+  RenderSettings small = tests::make_settings(Integrator::kPartial, 40, 30);
+  const Image first = gl.render(scene.camera("outside"), small);
+  gl.set_transfer_function(scene.function("thick"));
+  for (const EntryOrder order : {EntryOrder::kPeeling, EntryOrder::kLists}) {
+    RenderSettings large = tests::make_settings(Integrator::kAntiderivative, 150, 110);
+    large.entry_order = order;
+    gl.render(scene.camera("inside"), large);
+  }
+  gl.set_transfer_function(scene.function("random"));
+  EXPECT_TRUE(tests::images_equal(gl.render(scene.camera("outside"), small), first));
+}
+
+/// Rays of this comb of thin plates enter it far more often than lists have room for at first.
+TEST(GlMesh, RaysMayEnterAnyNumberOfTimes) {
+  TETRAVOX_REQUIRE_GL();
+  tests::MeshBuilder builder;
+  for (int i = 0; i < 60; ++i) {
+    tests::BoxOptions options;
+    options.bricks = {1, 1, 1};
+    options.lower = {-1, -1 + i / 30.0, -1};
+    options.upper = {1, -1 + (i + 0.5) / 30.0, 1};
+    tests::add_box(builder, options, [](const Vector3& p) { return p[0] + 2 * p[1]; });
+  }
+  const Subject scene = make_subject(builder.build(Association::kPoint));
+  Renderer gl = make_gl_renderer(scene.mesh), cpu(scene.mesh);
+  gl.set_transfer_function(scene.function("smooth"));
+  cpu.set_transfer_function(scene.function("smooth"));
+  for (const EntryOrder order : {EntryOrder::kLists, EntryOrder::kPeeling}) {
+    RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 64, 48);
+    settings.entry_order = order;
+    Camera camera = scene.camera("outside");
+    camera.position = {0.3, -9, 0.2};
+    camera.focal_point = {0, 0, 0};
+    camera.view_up = {0, 0, 1};
+    EXPECT_TRUE(tests::images_agree(gl.render(camera, settings), cpu.render(camera, settings), 1e-4)) << name_of(order);
+  }
+}
+
+TEST(GlMesh, WhatItCannotDrawItRefusesByName) {
+  TETRAVOX_REQUIRE_GL();
+  const Subject scene = make_subject("sphere");
+  Renderer gl = make_gl_renderer(scene.mesh);
+  gl.set_transfer_function(scene.function("smooth"));
+  const auto expect_refusal = [&](const char* name, const RenderSettings& settings) {
+    try {
+      gl.render(scene.camera("outside"), settings);
+      ADD_FAILURE() << name << " was not refused";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kUnsupported);
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
+  };
+  const RenderSettings plain = tests::make_settings(Integrator::kAntiderivative, 16, 12);
+  RenderSettings settings = plain;
+  settings.lighting.lights.emplace_back();
+  expect_refusal("light", settings);
+  settings = plain;
+  settings.surfaces.push_back({0.5});
+  expect_refusal("iso-surfaces", settings);
+  settings = plain;
+  settings.clipping.shapes.push_back({ClipPlane{}});
+  expect_refusal("clipping", settings);
+  settings = plain;
+  settings.opacity_weight = OpacityWeight::kGradient;
+  expect_refusal("opacity weights", settings);
+  settings = plain;
+  settings.wants_depth = true;
+  expect_refusal("depths", settings);
+  settings = plain;
+  settings.integrator = Integrator::kPre;
+  expect_refusal("pre", settings);
+}
+
+}  // namespace
+}  // namespace tetravox::conformance
