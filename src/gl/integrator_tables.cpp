@@ -3,26 +3,50 @@
 #include "src/optics/transparency_table.h"
 #include "tetravox/error.h"
 
-#include <bit>
 #include <cstddef>
 
 namespace tetravox::gl {
 namespace {
 
-constexpr GLuint kControlPointUnit = 2, kFirstIntervalUnit = 3, kTableUnit = 4, kMarkUnit = 5;
+constexpr GLuint kControlPointUnit = 2, kFirstIntervalUnit = 3, kTableUnit = 4, kVariationUnit = 5, kMarkUnit = 11;
 constexpr GLuint kTablesBinding = 1;
+
+const IntegratorShader kCell{"cell data", "integrators/cell.glsl", {}};
+const IntegratorShader kPartial{"partial", "integrators/partial.glsl", {}};
+const IntegratorShader kPost{"post", "integrators/post.glsl", {}};
+
+/// `has_coarse`: the table has places that are too coarse; `is_beyond`: scalars may lie beyond its ends.
+IntegratorShader antiderivative_shader(bool has_coarse, bool is_beyond) {
+  IntegratorShader shader{"antiderivative", "integrators/antiderivative.glsl", {}};
+  if (has_coarse) shader.defines.emplace_back("HAS_COARSE");
+  if (is_beyond) shader.defines.emplace_back("BEYOND");
+  for (const std::string& define : shader.defines) shader.name += ", " + define;
+  return shader;
+}
 
 }  // namespace
 
-std::string integrator_file(Integrator integrator, bool is_constant) {
-  if (is_constant) return "integrators/cell.glsl";
+void IntegratorShader::add_to(ShaderRecipe& recipe) const {
+  recipe.includes.emplace_back("integrator.glsl", file);
+  for (const std::string& define : defines) recipe.defines.emplace_back(define, "1");
+}
+
+std::vector<IntegratorShader> all_integrator_shaders() {
+  std::vector<IntegratorShader> shaders{kCell, kPartial, kPost};
+  for (const bool has_coarse : {false, true})
+    for (const bool is_beyond : {false, true}) shaders.push_back(antiderivative_shader(has_coarse, is_beyond));
+  return shaders;
+}
+
+IntegratorShader IntegratorTables::shader(Integrator integrator) const {
+  if (is_constant_) return kCell;
   switch (integrator) {
     case Integrator::kAntiderivative:
-      return "integrators/antiderivative.glsl";
+      return antiderivative_shader(antiderivative_.has_coarse, !antiderivative_.covers_data);
     case Integrator::kPartial:
-      return "integrators/partial.glsl";
+      return kPartial;
     case Integrator::kPost:
-      return "integrators/post.glsl";
+      return kPost;
     default:
       break;
   }
@@ -41,24 +65,24 @@ void IntegratorTables::set_transfer_function(const OpticalFunction& function, co
 void IntegratorTables::upload_antiderivatives() {
   const auto nodes = static_cast<std::size_t>(antiderivative_.last_node) + 1;
   nodes_.upload(GL_RGBA32I, antiderivative_.entries.data(), nodes * sizeof(optics::AntiderivativeTable::Node));
-  std::vector<std::array<std::int32_t, 4>> marks(nodes + 1);
+  variation_.upload(GL_R32F, antiderivative_.color_variation.data(), nodes * sizeof(float));
+  std::vector<std::array<std::int32_t, 2>> marks(nodes + 1);
   for (std::size_t node = 0; node < nodes; ++node)
-    marks[node] = {std::bit_cast<std::int32_t>(antiderivative_.color_variation[node]), antiderivative_.is_coarse[node],
-                   antiderivative_.coarse_before[node], 0};
-  marks[nodes][2] = antiderivative_.coarse_before[nodes];
-  marks_.upload(GL_RGBA32I, marks.data(), marks.size() * sizeof(marks[0]));
+    marks[node] = {antiderivative_.is_coarse[node], antiderivative_.coarse_before[node]};
+  marks[nodes][1] = antiderivative_.coarse_before[nodes];
+  marks_.upload(GL_RG32I, marks.data(), marks.size() * sizeof(marks[0]));
   has_antiderivatives_ = true;
 }
 
 void IntegratorTables::upload_control_points() {
   const auto count = static_cast<std::size_t>(control_points_.interval_count);
-  std::vector<std::array<float, 4>> records(3 * (count + 1));
+  std::vector<std::array<float, 4>> records(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
     records[3 * i] = control_points_.densities_front[i];
     records[3 * i + 1] = control_points_.slopes[i];
-    records[3 * i + 2] = {control_points_.starts[i], control_points_.references[i], 0.0f, 0.0f};
+    records[3 * i + 2] = {control_points_.starts[i], control_points_.starts[i + 1], control_points_.references[i],
+                          0.0f};
   }
-  records[3 * count + 2][0] = control_points_.starts[count];
   points_.upload(GL_RGBA32F, records.data(), records.size() * sizeof(records[0]));
   intervals_.upload(GL_R32I, control_points_.first_interval.data(),
                     control_points_.first_interval.size() * sizeof(std::int32_t));
@@ -73,6 +97,7 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance) {
   if (integrator == Integrator::kAntiderivative) {
     if (!has_antiderivatives_) upload_antiderivatives();
     nodes_.bind(kTableUnit);
+    variation_.bind(kVariationUnit);
     marks_.bind(kMarkUnit);
   }
   if (integrator == Integrator::kPartial) {
@@ -109,8 +134,8 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance) {
 }
 
 std::uint64_t IntegratorTables::bytes() const {
-  return antiderivative_.bytes() + control_points_.bytes() + nodes_.bytes() + marks_.bytes() + points_.bytes() +
-         intervals_.bytes() + (has_absorbed_ ? absorbed_.bytes() : 0) + block_.bytes();
+  return antiderivative_.bytes() + control_points_.bytes() + nodes_.bytes() + marks_.bytes() + variation_.bytes() +
+         points_.bytes() + intervals_.bytes() + (has_absorbed_ ? absorbed_.bytes() : 0) + block_.bytes();
 }
 
 }  // namespace tetravox::gl

@@ -14,8 +14,7 @@
 
 namespace tetravox::gl {
 
-/// Texture units that sources leave to integrators.
-inline constexpr GLuint kFirstTableUnit = 2, kPastTableUnits = 6;
+// Texture units: 0 and 1 belong to the rays, 2 to 5 and 11 to 15 to integrators, 6 to 10 to sources.
 
 /// The data that a function is for.
 struct TableSources {
@@ -25,8 +24,18 @@ struct TableSources {
   bool is_constant = false;  ///< cell data: control points alone
 };
 
-/// Shader file that integrates; `is_constant`: one value a segment.
-std::string integrator_file(Integrator integrator, bool is_constant);
+/// What `#include "integrator.glsl"` stands for in the shaders of a source.
+struct IntegratorShader {
+  std::string name;  ///< of its own for each variant
+  std::string file;
+  std::vector<std::string> defines;
+
+  /// Makes the shader one that integrates so.
+  void add_to(ShaderRecipe& recipe) const;
+};
+
+/// All that there may be.
+std::vector<IntegratorShader> all_integrator_shaders();
 
 /// The tables of one transfer function. With the context current.
 class IntegratorTables {
@@ -35,6 +44,8 @@ class IntegratorTables {
   /// Puts on the device what the integrator of these settings needs and is not there yet, and binds it. `tolerance`: of
   /// a segment.
   void bind(const RenderSettings& settings, float tolerance);
+  /// @throws Error (kUnsupported) for an integrator that this backend does not know.
+  IntegratorShader shader(Integrator integrator) const;
   const optics::ControlPointTable& control_points() const { return control_points_; }
   std::uint64_t bytes() const;
 
@@ -46,7 +57,7 @@ class IntegratorTables {
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
   bool has_antiderivatives_ = false, has_control_points_ = false;  // on the device
-  BufferTexture nodes_, marks_, points_, intervals_;
+  BufferTexture nodes_, variation_, marks_, points_, intervals_;
   Picture absorbed_;
   bool has_absorbed_ = false;
   Buffer block_;

@@ -42,6 +42,13 @@ scene::CameraFrame MeshBuffers::see(const Camera& camera, int width, int height)
   return frame;
 }
 
+bool MeshBuffers::is_behind_eye(const scene::CameraFrame& frame) const {
+  if (!frame.is_orthographic) return face_count_ > mesh_.boundary.size();
+  for (std::size_t i = 0; i < mesh_.vertices.size(); ++i)
+    if (seen_[4 * i + 2] < frame.eye[2]) return true;
+  return false;
+}
+
 void MeshBuffers::bind() const {
   vertices_.bind(kVertexUnit);
   cells_.bind(kCellUnit);

@@ -21,6 +21,8 @@ class MeshBuffers {
 
   /// Moves the vertices into the camera's frame, and finds the cells around the eye, which may move it.
   scene::CameraFrame see(const Camera& camera, int width, int height);
+  /// Whether rays of that frame may walk behind the eye: one in a cell, or the plane of an orthographic camera.
+  bool is_behind_eye(const scene::CameraFrame& frame) const;
   void bind() const;
   /// Vertices, faces and the first of those around the eye.
   WalkBlock describe() const;

@@ -54,8 +54,14 @@ class MeshRenderer final : public scene::FrameRenderer {
     device.frame.begin(context_->limits(), frame, mesh_.world_per_local, settings);
     device.mesh.bind();
     device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance);
-    device.walk.draw({device.mesh.describe(), device.frame, settings, mesh_.association == Association::kCell,
-                      context_->limits(), context.progress},
+    const bool has_cell_data = mesh_.association == Association::kCell;
+    device.walk.draw({device.mesh.describe(),
+                      device.frame,
+                      settings,
+                      device.tables.shader(settings.integrator),
+                      {has_cell_data, device.mesh.is_behind_eye(frame), settings.entry_order},
+                      context_->limits(),
+                      context.progress},
                      statistics);
     device.frame.download(image);
     context_->require_no_error("drawing");

@@ -1,6 +1,5 @@
 #include "src/gl/walk_passes.h"
 
-#include "src/gl/integrator_tables.h"
 #include "src/support/threads.h"
 #include "tetravox/error.h"
 
@@ -62,11 +61,12 @@ std::vector<ShaderRecipe> recipe_of_peeling() {
 
 ShaderRecipe recipe_of_sorting() { return {ShaderStage::kCompute, "sort_lists.comp", {}, {}}; }
 
-ShaderRecipe recipe_of_walk(Integrator integrator, bool has_cell_data, EntryOrder order) {
+ShaderRecipe recipe_of_walk(const IntegratorShader& integrator, const WalkVariant& variant) {
   ShaderRecipe recipe{ShaderStage::kCompute, "walk.comp", {}, {}};
-  if (has_cell_data) recipe.defines.emplace_back("CELL_DATA", "1");
-  if (order == EntryOrder::kPeeling) recipe.defines.emplace_back("PEELING", "1");
-  recipe.includes.emplace_back("integrator.glsl", integrator_file(integrator, has_cell_data));
+  if (variant.has_cell_data) recipe.defines.emplace_back("CELL_DATA", "1");
+  if (variant.is_behind_eye) recipe.defines.emplace_back("BEHIND_EYE", "1");
+  if (variant.order == EntryOrder::kPeeling) recipe.defines.emplace_back("PEELING", "1");
+  integrator.add_to(recipe);
   return recipe;
 }
 
@@ -163,10 +163,10 @@ void WalkPasses::peel_layer(const WalkFrame& frame, const WalkBlock& block) {
 
 /// Takes all rays from the entries at hand to their ends; how many set out.
 std::uint64_t WalkPasses::walk(const WalkFrame& frame, WalkBlock& block, RenderStatistics& statistics) {
-  const auto& [integrator, order] = std::pair{frame.settings.integrator, frame.settings.entry_order};
-  const std::string key = (frame.has_cell_data ? "cells" : name_of(integrator)) + " " + name_of(order);
+  const std::string key =
+      frame.integrator.name + ", " + name_of(frame.variant.order) + (frame.variant.is_behind_eye ? ", behind" : "");
   const ProgramName& program =
-      find_program(programs_, key, [&] { return std::vector{recipe_of_walk(integrator, frame.has_cell_data, order)}; });
+      find_program(programs_, key, [&] { return std::vector{recipe_of_walk(frame.integrator, frame.variant)}; });
   std::uint64_t entered = 0;
   block.steps = kSteps;
   block.is_first_pass = 1;
@@ -191,7 +191,7 @@ void WalkPasses::draw(const WalkFrame& frame, RenderStatistics& statistics) {
   prepare(frame);
   WalkBlock block = frame.block;
   block.is_first_layer = 1;
-  if (frame.settings.entry_order == EntryOrder::kLists) {
+  if (frame.variant.order == EntryOrder::kLists) {
     collect_entries(frame, block);
     statistics.rays = walk(frame, block, statistics);
     return;

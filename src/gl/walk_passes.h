@@ -5,6 +5,7 @@
 #include "src/gl/blocks.h"
 #include "src/gl/context.h"
 #include "src/gl/frame_parts.h"
+#include "src/gl/integrator_tables.h"
 #include "src/gl/program.h"
 #include "src/gl/resources.h"
 #include "tetravox/progress.h"
@@ -17,12 +18,20 @@
 
 namespace tetravox::gl {
 
+/// What the walk of a frame is compiled for.
+struct WalkVariant {
+  bool has_cell_data = false;
+  bool is_behind_eye = false;  ///< whether rays may walk behind the eye, where nothing is drawn
+  EntryOrder order = EntryOrder::kLists;
+};
+
 /// One frame, its mesh and tables bound.
 struct WalkFrame {
   WalkBlock block;
   const FrameParts& parts;
   const RenderSettings& settings;
-  bool has_cell_data = false;
+  IntegratorShader integrator;
+  WalkVariant variant;
   const Limits& limits;
   const Progress& progress;
 };
@@ -31,7 +40,7 @@ struct WalkFrame {
 std::vector<ShaderRecipe> recipe_of_lists();
 std::vector<ShaderRecipe> recipe_of_peeling();
 ShaderRecipe recipe_of_sorting();
-ShaderRecipe recipe_of_walk(Integrator integrator, bool has_cell_data, EntryOrder order);
+ShaderRecipe recipe_of_walk(const IntegratorShader& integrator, const WalkVariant& variant);
 
 /// With the context current.
 class WalkPasses {

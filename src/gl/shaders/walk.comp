@@ -59,8 +59,14 @@ void resume(Ray ray, Pause pause, inout Walker walker) {
                       0.0);
 }
 
+// Rays side by side travel together: blocks of 4 x 2 pixels, which is a vector of eight on many devices.
+ivec2 pixel_of(uvec3 group, uint index) {
+  uvec2 inside = uvec2((index & 3u) + ((index >> 3u) & 1u) * 4u, ((index >> 2u) & 1u) + (index >> 4u) * 2u);
+  return ivec2(8u * group.xy + inside);
+}
+
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = pixel_of(gl_WorkGroupID, gl_LocalInvocationIndex);
   if (pixel.x >= frame.width || pixel.y >= frame.height) return;
   uint place = uint(pixel.y * frame.width + pixel.x);
   Ray ray = ray_of(pixel);
@@ -87,25 +93,37 @@ void main() {
     entry = pauses[place].entry;
     z_checked = pauses[place].z_checked;
   }
-  Front front = front_at(walker.scalar_front);
 
-  uint segment_count = 0u;
-  for (int i = 0; i < walk.steps; ++i) {
+  uint segment_count = 0u, steps_left = uint(walk.steps);
+  while (steps_left > 0u && (walker.cell != kNoCell || entry != kNoEntry)) {
     if (walker.cell == kNoCell) {
-      if (entry == kNoEntry) break;
       uint face = face_of(entry);
       enter(ray, face, walker);
       note_entered(place, face, walker.z_front);
-      front = front_at(walker.scalar_front);
       entry = entry_behind(entry);
       z_checked = -1e30;
     }
-    walk_cell(ray, walker, front);
-    ++segment_count;
-    if (frame.use_early_ray_termination != 0 && is_settled(walker.sum)) {
-      walker.cell = kNoCell;
-      entry = kNoEntry;
-      end_ray(place);
+    Front front = front_at(walker.scalar_front);
+    bool is_pending_segment = false;
+    while (is_pending_segment || (steps_left > 0u && walker.cell != kNoCell)) {
+      if (!is_pending_segment) {
+        bool is_behind = walker.z_front < frame.z_near;
+        Segment segment = walk_cell(ray, walker);
+#ifdef BEHIND_EYE
+        if (is_behind) front = front_at(segment.scalar_front);
+#endif
+        begin(segment, front);
+        ++segment_count;
+        --steps_left;
+      }
+      advance(front, walker.sum);
+      is_pending_segment = is_pending(front);
+      if (frame.use_early_ray_termination != 0 && is_settled(walker.sum)) {
+        walker.cell = kNoCell;
+        entry = kNoEntry;
+        is_pending_segment = false;
+        end_ray(place);
+      }
     }
   }
   // A ray that did not get on in a whole pass goes round in circles (damaged meshes).

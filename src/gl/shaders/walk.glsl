@@ -27,8 +27,8 @@ void enter(Ray ray, uint face, inout Walker walker) {
   walker.scalar_front = interpolate(walker.weight, walker.scalar, met.scalar[0]);
 }
 
-// Through one cell: what the ray passes there is handed to the integrator.
-void walk_cell(Ray ray, inout Walker walker, inout Front front) {
+// Through one cell: the segment that the ray passes there.
+Segment walk_cell(Ray ray, inout Walker walker) {
   // The vertex opposite the entry face: by exclusive or with the three that are known.
   int links = 5 * int(walker.cell);
   uint d = min(texelFetch(cells, links).x ^ walker.id.x ^ walker.id.y ^ walker.id.z, walk.last_vertex);
@@ -65,17 +65,18 @@ void walk_cell(Ray ray, inout Walker walker, inout Front front) {
   scalar_back = walker.scalar_front = texelFetch(cell_scalars, int(walker.cell)).x;
 #endif
   Segment segment = Segment(walker.scalar_front, scalar_back, (z_back - walker.z_front) * ray.world_per_z);
-  if (walker.z_front < frame.z_near) {
-    // Of what lies behind the eye nothing is integrated.
-    float part = z_back > frame.z_near ? (z_back - frame.z_near) / (z_back - walker.z_front) : 0.0;
-    segment.scalar_front = mix(scalar_back, walker.scalar_front, part);
-    segment.world_length *= part;
-    front = front_at(segment.scalar_front);
-  }
-  integrate(segment, front, walker.sum);
+#ifdef BEHIND_EYE
+  // Of what lies behind the eye nothing is integrated.
+  float part = z_back <= frame.z_near            ? 0.0
+               : walker.z_front < frame.z_near ? (z_back - frame.z_near) / (z_back - walker.z_front)
+                                               : 1.0;
+  segment.scalar_front = mix(scalar_back, walker.scalar_front, part);
+  segment.world_length *= part;
+#endif
   walker.z_front = z_back;
   walker.scalar_front = scalar_back;
   walker.cell = neighbour;
+  return segment;
 }
 
 // Sums may round past 1 by an ulp.

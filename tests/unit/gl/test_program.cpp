@@ -26,7 +26,7 @@ TEST(Program, ErrorsNameFileAndLine) {
     FAIL();
   } catch (const Error& error) {
     const std::string text = error.what();
-    EXPECT_TRUE(text.find("walk.glsl:") != std::string::npos || text.find("walk.glsl(") != std::string::npos) << text;
+    EXPECT_TRUE(text.find("walk.comp:") != std::string::npos || text.find("walk.comp(") != std::string::npos) << text;
   }
 }
 

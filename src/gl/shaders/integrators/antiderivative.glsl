@@ -1,26 +1,46 @@
 // Differences of antiderivatives (Max, Hanrahan, Crawfis 1990; Lum, Wilson, Ma 2004), split where the error estimate
-// asks: the formulas of src/cpu/kernels/antiderivative-inl.h, for one ray.
+// asks: the formulas of src/cpu/kernels/antiderivative-inl.h, piece by piece.
+//
+// HAS_COARSE: the table is too coarse in places, which are left to the control points. BEYOND: scalars may lie beyond
+// the table's ends.
 
 #include "segment.glsl"
 #include "integrators/tables.glsl"
+
+#ifdef HAS_COARSE
 #include "integrators/control_points.glsl"
+#endif
 
 // [nodes][2]: T, K in fixed point; the bits of rho, rho * colour.
 layout(binding = 4) uniform isamplerBuffer antiderivatives;
-// [nodes + 1]: colour variation up to the node (its bits), whether the interval behind is coarse, how many before are.
-layout(binding = 5) uniform isamplerBuffer node_marks;
+layout(binding = 5) uniform samplerBuffer color_variation;  // [nodes] up to the node
+#ifdef HAS_COARSE
+layout(binding = 11) uniform isamplerBuffer node_marks;  // [nodes + 1]: whether the interval behind is coarse, how many before are
+#endif
 
+// The function where a ray is, and what is left of its segment.
 struct Front {
   float position;  // in nodes
   ivec4 sums;
   vec4 densities;
+  float variation;  // of the colour, up to there
+  float position_back;
+  float left;    // world length
+  float share;   // of what is left, for the next piece
+  bool is_pending;
+#ifdef HAS_COARSE
+  Course course;     // the same segment from control point to control point,
+  bool is_exact;     // where it is taken so
+#endif
 };
 
 float position_of(float scalar) { return (scalar - tables.first) * tables.nodes_per_scalar; }
 float inside(float at) { return clamp(at, 0.0, float(tables.last_node)); }
-bool is_outside(float at) { return at < -0.5 || at > float(tables.last_node) + 0.5; }
+int node_at(float at) { return int(inside(at)); }
+float variation_at(float at) { return texelFetch(color_variation, node_at(at + 0.5)).x; }
 
-Front point_at(float at) {
+// Puts the ray at a position.
+void place(float at, inout Front front) {
   float clamped = inside(at);
   int node = min(int(clamped), tables.last_node - 1);
   float f = clamped - float(node);
@@ -28,104 +48,128 @@ Front point_at(float at) {
   vec4 low = intBitsToFloat(texelFetch(antiderivatives, 2 * node + 1));
   vec4 slope = intBitsToFloat(texelFetch(antiderivatives, 2 * node + 3)) - low;
   vec4 mean = low + 0.5 * f * slope;
-  return Front(at, sums + ivec4(roundEven(f * tables.units_per_density * mean)), low + f * slope);
+  front.position = at;
+  front.sums = sums + ivec4(roundEven(f * tables.units_per_density * mean));
+  front.densities = low + f * slope;
+  front.variation = variation_at(at);
 }
 
-Front front_at(float scalar) { return point_at(position_of(scalar)); }
-
-// Optical depth and emission between two points inside the table.
-vec4 integrate_between(Front a, Front b, float len) {
-  float nodes = b.position - a.position;
-  if (abs(nodes) < 1.0) return (a.densities + b.densities) * (0.5 * len);
-  return vec4(b.sums - a.sums) * (len * tables.density_per_unit / nodes);
+Front front_at(float scalar) {
+  Front front;
+  place(position_of(scalar), front);
+  front.position_back = front.position;
+  front.left = 0.0;
+  front.share = 1.0;
+  front.is_pending = false;
+#ifdef HAS_COARSE
+  front.course = Course(Segment(scalar, scalar, 0.0), 1.0, scalar, 0, false);
+  front.is_exact = false;
+#endif
+  return front;
 }
 
+#ifdef BEYOND
 vec4 density_anywhere(Front p) {
   if (p.position < 0.0) return tables.density_below;
   return p.position > float(tables.last_node) ? tables.density_above : p.densities;
 }
+#else
+vec4 density_anywhere(Front p) { return p.densities; }
+#endif
 
-// The same where a point may lie beyond the table's ends: there the function is constant.
-vec4 integrate_anywhere(Front a, Front b, float len) {
-  float nodes = b.position - a.position, last = float(tables.last_node);
-  if (abs(nodes) < 1.0) return (density_anywhere(a) + density_anywhere(b)) * (0.5 * len);
+// Optical depth and emission between two places; beyond the table's ends the function is constant.
+vec4 integrate_between(Front a, Front b, float len) {
+  float nodes = b.position - a.position;
+  bool is_flat = abs(nodes) < 1.0;
+  vec4 total = vec4(b.sums - a.sums) * tables.density_per_unit;
+#ifdef BEYOND
+  float last = float(tables.last_node);
   float below = min(b.position, 0.0) - min(a.position, 0.0);
   float above = max(b.position - last, 0.0) - max(a.position - last, 0.0);
-  vec4 total = vec4(b.sums - a.sums) * tables.density_per_unit + tables.density_below * below +
-               tables.density_above * above;
-  return total * (len / nodes);
+  total += tables.density_below * below + tables.density_above * above;
+#endif
+  vec4 mean = (density_anywhere(a) + density_anywhere(b)) * 0.5;
+  return is_flat ? mean * len : total * (len / (is_flat ? 1.0 : nodes));
 }
 
-int node_at(float at) { return int(inside(at)); }
-float variation_at(float at) { return intBitsToFloat(texelFetch(node_marks, node_at(at + 0.5)).x); }
-bool is_coarse(float at) { return texelFetch(node_marks, node_at(at)).y != 0; }
+#ifdef HAS_COARSE
+bool is_coarse(float at) { return texelFetch(node_marks, node_at(at)).x != 0; }
 bool passes_coarse(float a, float b) {
-  return texelFetch(node_marks, node_at(min(a, b))).z != texelFetch(node_marks, node_at(max(a, b)) + 1).z;
+  return texelFetch(node_marks, node_at(min(a, b))).y != texelFetch(node_marks, node_at(max(a, b)) + 1).y;
+}
+#endif
+
+void begin(Segment segment, inout Front front) {
+  front.position_back = position_of(segment.scalar_back);
+  front.left = segment.world_length;
+  front.share = 1.0;
+  front.is_pending = true;
+#ifdef HAS_COARSE
+  front.is_exact = segment.world_length > 0.0 && (is_coarse(front.position) || is_coarse(front.position_back));
+  front.course = begin_course(segment);
+#endif
 }
 
-// In pieces, each as long as the tolerance allows: one that errs by more is halved, one that passes is followed by one
+bool is_pending(Front front) { return front.is_pending; }
+
+#ifdef HAS_COARSE
+// One piece between control points, so thin that self-attenuation is within the tolerance.
+void advance_exactly(inout Front front, inout vec4 sum) {
+  LinearPiece p;
+  float goal_t, goal;
+  if (!find_piece(front.course, p, goal_t, goal)) return;
+  vec3 change = abs(p.front.yzw - p.back.yzw);
+  float most = max(max(change.x, max(change.y, change.z)), 1e-6);
+  const float kDark = 1e-6;  // what comes after that little light has no colour to add
+  float deepest = sum.a > kDark ? sqrt(tables.split_threshold / most) : 1e30;
+  pass_piece(deepest, goal_t, goal, p, front.course);
+  float depth = 0.5 * (p.front.x + p.back.x) * p.world_length;
+  vec3 emission = (p.front.x * (2.0 * p.front.yzw + p.back.yzw) + p.back.x * (2.0 * p.back.yzw + p.front.yzw)) *
+                  (p.world_length / 6.0);
+  composite_piece(depth, emission, sum);
+}
+#endif
+
+// One piece: as long as the tolerance allows. One that would err by more is halved, one that passes is followed by one
 // twice as long.
-void integrate_pieces(float len, Front front, Front back, inout vec4 sum) {
-  float span = back.position - front.position;
-  float shortest = 1.0 / max(abs(span), 1.0);  // one node: the colour is nearly linear there
-  Front at = front;
-  float variation = variation_at(front.position), t = 0.0, step_size = 1.0;
-  for (;;) {
-    bool is_last = t + step_size >= 1.0;
-    float next_t = is_last ? 1.0 : t + step_size;
-    Front next = point_at(is_last ? back.position : front.position + span * next_t);
-    float next_variation = variation_at(next.position);
-    vec4 integrals = integrate_anywhere(at, next, len * (next_t - t));
-    float error = integrals.x * integrals.x * min(1.0, abs(next_variation - variation)) * sum.a;
-    bool is_fine = error <= tables.split_threshold || step_size <= shortest;
-    step_size *= is_fine ? 2.0 : 0.5;
-    if (!is_fine) continue;
-    composite_piece(integrals.x, integrals.yzw, sum);
-    if (is_last || sum.a <= kDark) return;
-    at = next;
-    variation = next_variation;
-    t = next_t;
+void advance(inout Front front, inout vec4 sum) {
+  bool is_last = front.share >= 1.0;
+#ifdef HAS_COARSE
+  if (front.is_exact) {
+    advance_exactly(front, sum);
+    if (front.course.is_pending) return;
+    is_last = true;
   }
+#endif
+  Front next = front;
+  place(is_last ? front.position_back : mix(front.position, front.position_back, front.share), next);
+  float len = front.left * (is_last ? 1.0 : front.share);
+  vec4 integrals = integrate_between(front, next, len);
+  // What the spread of colour errs: dc tau^2 / 12 (see the kernel). Within a node the colour is nearly linear.
+  float error = integrals.x * integrals.x * min(1.0, abs(next.variation - front.variation)) * sum.a;
+  bool is_fine = error <= tables.split_threshold || abs(next.position - front.position) <= 1.001;
+#ifdef HAS_COARSE
+  if (front.is_exact) {
+    integrals = vec4(0.0);  // they have been composited
+    is_fine = true;
+  } else if (!is_fine && passes_coarse(front.position, front.position_back)) {
+    front.is_exact = true;  // only at first: what follows a piece that passed never is
+    return;
+  }
+#endif
+  if (!is_fine) {
+    front.share *= 0.5;
+    return;
+  }
+  composite_piece(integrals.x, integrals.yzw, sum);
+  front.position = next.position;
+  front.sums = next.sums;
+  front.densities = next.densities;
+  front.variation = next.variation;
+  front.left -= len;
+  // Of what is left, twice as long as this piece was.
+  front.share = min(2.0 * front.share / max(1.0 - front.share, 1e-3), 1.0);
+  front.is_pending = !is_last;
 }
 
-// From control point to control point, in pieces so thin that self-attenuation is within the tolerance.
-void integrate_exactly(Segment segment, inout vec4 sum) {
-  LinearWalk walk = begin_linear_walk(segment);
-  while (!walk.is_done && sum.a > kDark) {
-    float goal_t, goal;
-    bool is_end;
-    find_goal(segment, walk, goal_t, goal, is_end);
-    vec3 change = abs(eval_interval(walk.interval, walk.scalar).yzw - eval_interval(walk.interval, goal).yzw);
-    float most = max(max(change.x, max(change.y, change.z)), 1e-6);
-    LinearPiece p = next_piece(segment, sqrt(tables.split_threshold / most), walk);
-    float depth = 0.5 * (p.front.x + p.back.x) * p.world_length;
-    vec3 emission = (p.front.x * (2.0 * p.front.yzw + p.back.yzw) + p.back.x * (2.0 * p.back.yzw + p.front.yzw)) *
-                    (p.world_length / 6.0);
-    composite_piece(depth, emission, sum);
-  }
-}
-
-void integrate(Segment segment, inout Front front, inout vec4 sum) {
-  Front before = front;
-  Front back = front_at(segment.scalar_back);
-  front = back;
-  vec4 integrals = integrate_between(before, back, segment.world_length);
-  float nodes = abs(back.position - before.position);
-  bool beyond = tables.covers_data == 0 && (is_outside(before.position) || is_outside(back.position));
-  bool coarse = tables.has_coarse != 0 && (is_coarse(before.position) || is_coarse(back.position));
-  float weight = integrals.x * integrals.x * sum.a;
-  bool is_doubtful = beyond || integrals.x > 0.25 ||
-                     weight * min(1.0, nodes * tables.largest_color_slope) > tables.split_threshold;
-  if (is_doubtful && !coarse) {
-    // By the colours that the segment really passes.
-    float change = min(1.0, abs(variation_at(back.position) - variation_at(before.position)));
-    is_doubtful = beyond || weight * change > tables.split_threshold;
-    coarse = is_doubtful && tables.has_coarse != 0 && passes_coarse(before.position, back.position);
-  }
-  if (coarse)
-    integrate_exactly(segment, sum);
-  else if (is_doubtful)
-    integrate_pieces(segment.world_length, before, back, sum);
-  else
-    composite_piece(integrals.x, integrals.yzw, sum);
-}
+#include "integrators/integrate.glsl"

@@ -1,37 +1,26 @@
-// The control points of the function themselves, and the pieces of a segment between them.
+// The control points of the function themselves, and a segment taken from one to the next.
 
 #include "segment.glsl"
 #include "integrators/tables.glsl"
 
-// [intervals + 1][3]: rho, colour at the reference; their slopes; (start, reference, 0, 0). The last has a start only.
+// [intervals][3]: rho, colour at the reference; their slopes; (start, end, reference, 0).
 layout(binding = 2) uniform samplerBuffer control_points;
 layout(binding = 3) uniform isamplerBuffer first_interval;  // [buckets] interval at the lower end of each
 
-float start_of(int interval) { return texelFetch(control_points, 3 * interval + 2).x; }
-
-// The interval that holds a scalar; one at a control point belongs to the interval that starts there.
-int find_interval(float scalar) {
+int guess_interval(float scalar) {
   float at = (scalar - tables.points_first) * tables.buckets_per_scalar;
-  int interval = texelFetch(first_interval, int(clamp(at, 0.0, float(tables.last_bucket)))).x;
-  while (interval + 1 < tables.interval_count && start_of(interval + 1) <= scalar) ++interval;
-  return interval;
+  return texelFetch(first_interval, int(clamp(at, 0.0, float(tables.last_bucket)))).x;
 }
 
-// The interval in which a ray sets out: one that falls from a control point starts in the interval below (the tie rule
-// of Espinha and Celes 2005).
-int find_front_interval(float scalar, bool rises) {
-  int interval = find_interval(scalar);
-  return !rises && start_of(interval) == scalar ? max(interval - 1, 0) : interval;
-}
-
-// Extinction and colour by the line of an interval.
-vec4 eval_interval(int interval, float scalar) {
+// Extinction and colour at a scalar. One at a control point belongs to the interval that starts there.
+vec4 eval_optics(float scalar) {
+  int interval = guess_interval(scalar);
+  vec4 place = texelFetch(control_points, 3 * interval + 2);
+  while (place.y <= scalar) place = texelFetch(control_points, 3 * ++interval + 2);
   vec4 front = texelFetch(control_points, 3 * interval), slope = texelFetch(control_points, 3 * interval + 1);
-  vec4 optics = front + slope * (scalar - texelFetch(control_points, 3 * interval + 2).y);
+  vec4 optics = front + slope * (scalar - place.z);
   return vec4(max(optics.x, 0.0), optics.yzw);
 }
-
-vec4 eval_optics(float scalar) { return eval_interval(find_interval(scalar), scalar); }
 
 // Adds a piece of constant extinction and colour.
 void composite_uniform(vec4 optics, float len, inout vec4 sum) {
@@ -39,60 +28,63 @@ void composite_uniform(vec4 optics, float len, inout vec4 sum) {
   composite_piece(depth, depth * optics.yzw, sum);
 }
 
-// Goes along a segment from control point to control point. A walk holds where it is; a piece is no deeper than asked.
-struct LinearWalk {
-  int interval;
-  float t;
-  float scalar;
-  bool is_done;
+// A segment on its way from control point to control point.
+struct Course {
+  Segment segment;
+  float t;       // share of the segment that has been passed
+  float scalar;  // there
+  int interval;  // a guess, until it holds the scalar
+  bool is_pending;
 };
 
+Course begin_course(Segment segment) {
+  return Course(segment, 0.0, segment.scalar_front, guess_interval(segment.scalar_front), segment.world_length > 0.0);
+}
+
+// On such a piece extinction and colour are linear.
 struct LinearPiece {
   vec4 front;  // extinction, colour
   vec4 back;
   float world_length;
 };
 
-LinearWalk begin_linear_walk(Segment segment) {
-  bool rises = segment.scalar_back >= segment.scalar_front;
-  return LinearWalk(find_front_interval(segment.scalar_front, rises), 0.0, segment.scalar_front,
-                    !(segment.world_length > 0.0));
-}
-
-// Where the next piece would end, at the next control point or the segment's end: place, scalar; and if it is the end.
-void find_goal(Segment segment, LinearWalk walk, out float goal_t, out float goal, out bool is_end) {
+// The piece up to the next control point, or the end. False while the interval is still being looked for: then the
+// course is nearer to it. A ray that falls from a control point starts in the interval below (the tie rule of Espinha
+// and Celes 2005).
+bool find_piece(inout Course course, out LinearPiece piece, out float goal_t, out float goal) {
+  vec4 front = texelFetch(control_points, 3 * course.interval);
+  vec4 slope = texelFetch(control_points, 3 * course.interval + 1);
+  vec4 place = texelFetch(control_points, 3 * course.interval + 2);
+  Segment segment = course.segment;
   float span = segment.scalar_back - segment.scalar_front;
-  bool is_level = span == 0.0;
-  float border = start_of(walk.interval + (span >= 0.0 ? 1 : 0));
-  bool is_open = span >= 0.0 ? walk.interval + 1 >= tables.interval_count : walk.interval == 0;
-  float border_t = is_open || is_level ? 1.0 : max((border - segment.scalar_front) / span, walk.t);
-  is_end = border_t >= 1.0;
-  goal_t = is_end ? 1.0 : border_t;
-  goal = is_end ? segment.scalar_back : border;
+  bool rises = span >= 0.0;
+  bool is_above = rises ? course.scalar >= place.y : course.scalar > place.y;
+  bool is_below = rises ? course.scalar < place.x : course.scalar <= place.x;
+  course.interval += is_above ? 1 : is_below ? -1 : 0;
+
+  float border = rises ? place.y : place.x;
+  float border_t = span == 0.0 ? 1.0 : max((border - segment.scalar_front) / span, course.t);
+  goal_t = min(border_t, 1.0);
+  goal = border_t >= 1.0 ? segment.scalar_back : border;
+  vec4 here = front + slope * (course.scalar - place.z), there = front + slope * (goal - place.z);
+  piece.front = vec4(max(here.x, 0.0), here.yzw);
+  piece.back = vec4(max(there.x, 0.0), there.yzw);
+  piece.world_length = segment.world_length * (goal_t - course.t);
+  return !is_above && !is_below;
 }
 
-// The next piece, no deeper than `deepest` (optical depth).
-LinearPiece next_piece(Segment segment, float deepest, inout LinearWalk walk) {
-  float goal_t, goal;
-  bool is_end;
-  find_goal(segment, walk, goal_t, goal, is_end);
-  vec4 front = eval_interval(walk.interval, walk.scalar), back = eval_interval(walk.interval, goal);
-  float reach = deepest / max(max(front.x, back.x) * segment.world_length, 1e-30);
+// Takes the piece no further than an optical depth of `deepest`, and the course to its end.
+void pass_piece(float deepest, float goal_t, float goal, inout LinearPiece piece, inout Course course) {
+  float depth = max(piece.front.x, piece.back.x) * piece.world_length;
+  float share = min(deepest / max(depth, 1e-30), 1.0);
+  float next_t = mix(course.t, goal_t, share);
   // A step too small for float would never end: then go all the way.
-  bool arrives = goal_t <= walk.t + reach || walk.t + reach <= walk.t;
-  float next_t = goal_t, next = goal;
-  if (!arrives) {
-    next_t = walk.t + reach;
-    next = segment.scalar_front + next_t * (segment.scalar_back - segment.scalar_front);
-    back = eval_interval(walk.interval, next);
-  }
-  LinearPiece piece = LinearPiece(front, back, segment.world_length * (next_t - walk.t));
-  walk.is_done = arrives && is_end;
-  if (arrives && !is_end) walk.interval += segment.scalar_back >= segment.scalar_front ? 1 : -1;
-  walk.t = next_t;
-  walk.scalar = next;
-  return piece;
+  bool arrives = share >= 1.0 || next_t <= course.t;
+  if (!arrives) piece.back = mix(piece.front, piece.back, share);
+  piece.world_length *= arrives ? 1.0 : share;
+  Segment segment = course.segment;
+  course.is_pending = !arrives || goal_t < 1.0;
+  course.interval += arrives && goal_t < 1.0 ? (segment.scalar_back >= segment.scalar_front ? 1 : -1) : 0;
+  course.t = arrives ? goal_t : next_t;
+  course.scalar = arrives ? goal : mix(segment.scalar_front, segment.scalar_back, next_t);
 }
-
-// What comes after a millionth of the light has no colour to add.
-const float kDark = 1e-6;

@@ -1,10 +1,19 @@
 // Partial pre-integration (Moreland and Angel 2004; Espinha and Celes 2005): exact for piecewise linear functions.
 
 #include "integrators/control_points.glsl"
-#include "integrators/without_front.glsl"
 
 // 1 - psi over gamma = d / (d + 1), see src/optics/transparency_table.h; linear between the centres of texels.
 layout(binding = 4) uniform sampler2D absorbed_table;
+
+struct Front {
+  Course course;
+};
+
+Front front_at(float scalar) {
+  return Front(Course(Segment(scalar, scalar, 0.0), 1.0, scalar, 0, false));
+}
+void begin(Segment segment, inout Front front) { front.course = begin_course(segment); }
+bool is_pending(Front front) { return front.course.is_pending; }
 
 float look_up_absorbed(float front, float back) {
   float size = float(textureSize(absorbed_table, 0).x - 1);
@@ -27,8 +36,13 @@ void composite_linear(LinearPiece piece, inout vec4 sum) {
   sum.a -= sum.a * alpha;
 }
 
-void integrate(Segment segment, inout Front front, inout vec4 sum) {
+void advance(inout Front front, inout vec4 sum) {
   const float kDeepest = 8.0;  // the table is fine up to this optical depth
-  LinearWalk walk = begin_linear_walk(segment);
-  while (!walk.is_done && sum.a > kDark) composite_linear(next_piece(segment, kDeepest, walk), sum);
+  LinearPiece piece;
+  float goal_t, goal;
+  if (!find_piece(front.course, piece, goal_t, goal)) return;
+  pass_piece(kDeepest, goal_t, goal, piece, front.course);
+  composite_linear(piece, sum);
 }
+
+#include "integrators/integrate.glsl"

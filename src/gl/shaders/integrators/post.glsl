@@ -1,9 +1,9 @@
 // Post-classification: samples in the middles of equal pieces of each segment; for comparison.
 
 #include "integrators/control_points.glsl"
-#include "integrators/without_front.glsl"
+#include "integrators/whole_segments.glsl"
 
-void integrate(Segment segment, inout Front front, inout vec4 sum) {
+void integrate_whole(Segment segment, inout vec4 sum) {
   float share = 1.0 / float(tables.samples);
   for (int i = 0; i < tables.samples; ++i) {
     float scalar = mix(segment.scalar_front, segment.scalar_back, (float(i) + 0.5) * share);
