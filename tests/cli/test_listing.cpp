@@ -32,6 +32,7 @@ TEST_F(Listing, Topics) {
   expect_text({"list", "presets"}, {"viridis", "coolwarm", "peaks", "random", "auto:boundaries"});
   expect_text({"list", "readers"}, {"VTU", ".png", ".exr", ".npy"});
   expect_text({"list", "builtins"}, {"builtin:sphere", "builtin:buckyball", "builtin:duct"});
+  expect_text({"list", "devices"}, {"Devices for --backend gl"});
   expect_text({"list", "environments"}, {"builtin:studio", "builtin:sky", "builtin:room"});
   expect_text({"list", "methods"},
               {"walk", "antiderivative", "partial", "post", "Gradients (--gradient)", "central", "Shadows (--shadows)",

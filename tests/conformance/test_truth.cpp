@@ -1,5 +1,8 @@
 /// Every mesh scene of the shared exact pictures, read from its file and drawn.
 
+#ifdef TETRAVOX_WITH_GL
+#include "tests/common/gl.h"
+#endif
 #include "tests/common/image_compare.h"
 #include "tests/common/image_file.h"
 #include "tests/reference/integrator.h"
@@ -74,6 +77,24 @@ class Truth : public ::testing::TestWithParam<std::string> {
 TEST_P(Truth, AntiderivativeIsWithinHalfAnEightBitStep) { expect_close(Integrator::kAntiderivative, 2e-3, 2e-4); }
 
 TEST_P(Truth, PartialIsExact) { expect_close(Integrator::kPartial, 2e-4, 2e-4); }
+
+#ifdef TETRAVOX_WITH_GL
+TEST_P(Truth, OpenGlIsAsExact) {
+  TETRAVOX_REQUIRE_GL();
+  const PreparedMesh mesh = prepare_mesh(dataset_.mesh);
+  const CompletedScene completed = complete_scene(scene_, mesh);
+  Renderer renderer = make_gl_renderer(mesh);
+  renderer.set_transfer_function(completed.optical_function);
+  for (const auto& [integrator, max] : {std::pair{Integrator::kAntiderivative, 2e-3}, {Integrator::kPartial, 2e-4}}) {
+    RenderSettings settings = scene_.settings;
+    settings.integrator = integrator;
+    const Image image = renderer.render(completed.camera, settings);
+    std::printf("%s, %s: %s\n", GetParam().c_str(), name_of(integrator).c_str(),
+                tests::describe(tests::compare_images(image, truth_)).c_str());
+    EXPECT_TRUE(tests::images_agree(image, truth_, max, 2e-4)) << name_of(integrator);
+  }
+}
+#endif
 
 TEST_P(Truth, TheReferenceAgrees) {
   const reference::View view{*scene_.camera, truth_.width, truth_.height, 1, 2, 4};
