@@ -1,5 +1,7 @@
 #include "src/cpu/grid_marches.h"
 
+#include "tetravox/error.h"
+
 namespace tetravox::cpu {
 
 Marches choose_marches(const Kernels& kernels, bool is_constant, const RenderSettings& settings) {
@@ -13,6 +15,10 @@ Marches choose_marches(const Kernels& kernels, bool is_constant, const RenderSet
       return both(has_rate ? kernels.sample_post : kernels.march_post, nullptr);
     case Integrator::kPre:
       return both(has_rate ? kernels.sample_densities : kernels.march_densities, nullptr);
+    case Integrator::kTable3d:
+    case Integrator::kPolynomial:
+    case Integrator::kCylindrical:
+      throw Error(ErrorCode::kUnsupported, "this integrator is not drawn yet");
     case Integrator::kAntiderivative:
       break;
   }

@@ -40,6 +40,10 @@ auto choose_walk(const Kernels& kernels, Association association, Integrator int
     case Integrator::kPre:
       throw Error(ErrorCode::kUnsupported,
                   "pre-classification is for grids; meshes are drawn with antiderivative, partial or post");
+    case Integrator::kTable3d:
+    case Integrator::kPolynomial:
+    case Integrator::kCylindrical:
+      throw Error(ErrorCode::kUnsupported, "this integrator is not drawn yet");
     case Integrator::kAntiderivative:
       break;
   }
