@@ -30,7 +30,7 @@ struct PreintegrationSettings {
   LengthSpacing length_spacing = LengthSpacing::kLogarithmic;  ///< (table3d)
   int degree = 2;                                              ///< of the chromaticity, in [0, 4] (polynomial)
   OpacityModel opacity = OpacityModel::kExponential;           ///< (polynomial)
-  int planes = 33;              ///< through the axis of the cylinder, in [2, 1024] (cylindrical)
+  int planes = 65;              ///< through the axis of the cylinder, in [2, 1024] (cylindrical)
   int tile = 64;                ///< texels along each side of a plane's tile, in [2, 512] (cylindrical)
   int steps = 64;               ///< of integration for each entry, at least, in [1, 4096] (all)
   int bits = 32;                ///< each number is stored in: 8, 12, 16 (fixed point, emulated) or 32 (float) (all)

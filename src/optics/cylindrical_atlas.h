@@ -3,14 +3,16 @@
 /// The three-dimensional table in sheared cylindrical coordinates, as tiles of a two-dimensional atlas (Roettger and
 /// Ertl 2002).
 ///
-/// With u = s_front, d = s_back - s_front (the shear) and h = length / longest, all segments of no length and no
-/// difference lie on the axis d = h = 0. When a tetrahedron is projected, each of its triangles spans a plane that
-/// holds a part of this axis, so that planes through the axis are all that is needed: one tile a plane.
+/// With d = s_back - s_front (the shear) and h = length / longest, all segments of no length and no difference lie on
+/// the axis d = h = 0. When a tetrahedron is projected, each of its triangles spans a plane that holds a part of this
+/// axis, so that planes through the axis are all that is needed: one tile a plane.
 ///
-/// How we differ: planes are met linearly, not the nearest; and where the paper has angle and radius, we have the
-/// place on a square around the axis and its size, which lose no texels and need no trigonometry:
-///   radius v = max(|d|, h);
-///   turn   w = d / h where |d| <= h;  2 - h / d where d > h;  -2 + h / -d where -d > h;  0 on the axis. In [-2, 2].
+/// How we differ: planes are met linearly, not the nearest; where the paper has angle and radius, we have the place on
+/// a square around the axis and its size, which lose no texels and need no trigonometry; and the place along the axis
+/// goes from end to end of what can occur at a difference, so that no texel lies beyond the scalars that there are:
+///   radius v = max(|d|, h)
+///   turn   w = d / h where |d| <= h;  2 - h / d where d > h;  -2 + h / -d where -d > h;  0 on the axis. In [-2, 2]
+///   along  u = min(s_front, s_back) / (1 - |d|)
 
 #include "src/optics/segment_domain.h"
 
@@ -28,8 +30,7 @@ struct CylindricalAtlas {
   int columns = 0, rows = 0;  ///< of tiles: plane p is in column p % columns, row p / columns
   /// [rows * tile][columns * tile][4]: premultiplied red, green, blue, and opacity, each divided by the opacity bound
   /// of the length; at length 0 the limit, mean density / largest extinction. In [0, 1]. As a texture: x along u. Tiles
-  /// need no border: u and v end at texel centres. Texels whose s_back is beyond [0, 1] hold what the function is
-  /// there.
+  /// need no border: u and v end at texel centres.
   std::vector<float> texels;
 
   std::uint64_t bytes() const { return texels.size() * sizeof(float); }
