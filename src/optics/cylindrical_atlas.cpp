@@ -99,7 +99,7 @@ SegmentColor eval_cylindrical_atlas(const CylindricalAtlas& atlas, float scalar_
   const SegmentDomain& domain = atlas.domain;
   const float front = eval_scalar_place(domain, scalar_front);
   const float back = eval_scalar_place(domain, scalar_back), difference = back - front;
-  const float share = std::min(length / domain.longest, 1.0f);
+  const float share = std::min(length, domain.longest) / domain.longest;
   const float slant = std::abs(difference), radius = std::max(slant, share);
   const float divisor = std::max(radius, 1e-30f);
   const float steep = 2.0f - share / divisor, flat = slant / divisor;

@@ -173,7 +173,7 @@ SegmentColor eval_polynomial_table(const PolynomialTable& table, float scalar_fr
   const float depth = sum[3] * inside;
   float opacity = std::min(depth, 1.0f);
   if (table.opacity == OpacityModel::kExponential) {
-    const Node node = find_node(std::min(depth / PolynomialTable::kDeepest, 1.0f), PolynomialTable::kDepths);
+    const Node node = find_node(std::min(depth * (1.0f / PolynomialTable::kDeepest), 1.0f), PolynomialTable::kDepths);
     const float* ratios = table.absorbed_ratios.data() + node.index;
     opacity = depth < PolynomialTable::kDeepest ? depth * (node.part * (ratios[1] - ratios[0]) + ratios[0]) : 1.0f;
   }

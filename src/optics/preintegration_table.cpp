@@ -49,7 +49,7 @@ void build_preintegration_table(const PreintegrationSource& source, const Preint
 SegmentColor eval_preintegration_table(const PreintegrationTable& table, float scalar_front, float scalar_back,
                                        float length) {
   const SegmentDomain& domain = table.domain;
-  const float share = std::min(length / domain.longest, 1.0f);
+  const float share = std::min(length, domain.longest) / domain.longest;
   const Node x = find_node(eval_scalar_place(domain, scalar_front), table.scalars);
   const Node y = find_node(eval_scalar_place(domain, scalar_back), table.scalars);
   const Node z = find_node(eval_length_place(table.spacing, share), table.lengths);

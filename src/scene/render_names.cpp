@@ -116,7 +116,8 @@ Integrator integrator_from_name(const std::string& name) {
 
 std::string format_integrator(const RenderSettings& settings) {
   std::string text = name_of(settings.integrator);
-  if (settings.integrator == Integrator::kPolynomial) text += "=" + std::to_string(settings.preintegration.degree);
+  if (settings.integrator == Integrator::kPolynomial)
+    text.append(1, '=').append(std::to_string(settings.preintegration.degree));
   return text;
 }
 
