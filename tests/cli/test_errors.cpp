@@ -102,6 +102,13 @@ TEST_F(Errors, FilesThatAreWrong) {
                {"camera"});
 }
 
+TEST_F(Errors, CylindricalTablesAreForMeshes) {
+  expect_error(run({"render", "builtin:hydrogen", "--integrator", "cylindrical"}), 2,
+               {"--integrator cylindrical", "is for meshes", "builtin:hydrogen"});
+  write("s.json", R"({"tetravox":1,"data":{"file":"builtin:hydrogen"},"render":{"integrator":"cylindrical"}})");
+  expect_error(run({"render", "s.json"}), 1, {"render.integrator 'cylindrical'", "is for meshes"});
+}
+
 TEST_F(Errors, OutputThatCannotBeWritten) {
   const std::vector<std::string> start{"render", "builtin:sphere", "--resolution", "16,16", "-o"};
   const auto draw = [&](const std::string& output) {
