@@ -6,19 +6,20 @@ BUILD := build/release
 TETRAVOX := $(BUILD)/bin/tetravox
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench build install format check gallery clean
+.PHONY: help demo test bench papers build install format check gallery clean
 
 help:
 	@echo "make demo      draw four embedded datasets into out/demo"
 	@echo "make test      build everything and run all tests"
 	@echo "make bench     measure against VTK: tables in out/bench (QUICK=1: one round of each)"
+	@echo "make papers    measure the papers' tables again: out/papers (QUICK=1: one round of each)"
 	@echo "make build     build the tool: $(TETRAVOX)"
 	@echo "make install   install tool, library and CMake package (PREFIX=$(PREFIX))"
 	@echo "make gallery   draw the pictures of README and docs again, measure those of docs/methods"
 	@echo "make format    format all C++"
 	@echo "make check     formatting and include rules"
 	@echo "make clean     remove build/release and out"
-	@echo "demo, test, bench and build first install what is missing: tools/install_dependencies.sh"
+	@echo "demo, test, bench, papers and build first install what is missing: tools/install_dependencies.sh"
 
 # A tree that was never configured leaves out the tests, so that a build needs no test packages.
 CONFIGURE = cmake --preset release \
@@ -48,6 +49,14 @@ bench:
 	@$(CONFIGURE) -DTETRAVOX_WITH_BENCH=ON
 	@cmake --build --preset release --parallel $(JOBS) --target product export_dataset
 	@/usr/bin/python3 bench/run.py --build $(BUILD) $(if $(QUICK),--quick) $(if $(README),--readme $(README))
+
+papers:
+	@tools/install_dependencies.sh build bench
+	@$(CONFIGURE) -DTETRAVOX_WITH_BENCH=ON
+	@cmake --build --preset release --parallel $(JOBS) --target preintegration_tables
+	@mkdir -p out/papers
+	@$(BUILD)/bin/preintegration_tables --json out/papers/tables.json $(if $(QUICK),--quick) > out/papers/tables.md
+	@cat out/papers/tables.md
 
 install:
 	@tools/install_dependencies.sh build

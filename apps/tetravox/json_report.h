@@ -56,6 +56,7 @@ struct MemoryPlan {
   std::uint64_t values = 0;     ///< of a grid, as read; they stay
   std::uint64_t resident = 0;   ///< the prepared mesh, or the summaries of a grid
   std::uint64_t render = 0;     ///< camera frame, tables and picture at `width` x `height`
+  std::uint64_t tables = 0;     ///< of these, tables of ray integrals
   std::uint64_t available = 0;  ///< that may still be allocated
   int width = 0, height = 0;
 };

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 
 namespace tetravox::tool {
 
@@ -34,6 +35,9 @@ MemoryPlan plan_memory(const Dataset& dataset, const RenderSettings& settings) {
     // A boundary of as many faces as there are cells is far beyond what meshes have.
     plan.render = estimate_render_memory(mesh.point_count(), mesh.cell_count(), settings);
   }
+  RenderSettings without_tables = settings;
+  without_tables.integrator = Integrator::kAntiderivative;
+  plan.tables = estimate_render_memory(0, 0, settings) - estimate_render_memory(0, 0, without_tables);
   plan.available = available_memory();
   plan.width = settings.width;
   plan.height = settings.height;
@@ -44,11 +48,13 @@ void require_memory(const MemoryPlan& plan, const std::string& data_path) {
   const std::uint64_t needed = std::max(plan.prepare, plan.resident + plan.render);
   if (needed <= plan.available) return;
   const bool is_picture = plan.resident + plan.render > plan.prepare && plan.render > plan.resident;
-  throw Error(ErrorCode::kOutOfMemory,
-              "drawing '" + data_path + "' at " + std::to_string(plan.width) + " x " + std::to_string(plan.height) +
-                  " needs about " + format_bytes(needed) + " of memory and " + format_bytes(plan.available) +
-                  " are free: " + (is_picture ? "give a smaller --resolution" : "close other programs") +
-                  " or use a larger machine");
+  const std::string advice = plan.tables > needed / 2 ? "give a smaller --preintegration-size"
+                             : is_picture             ? "give a smaller --resolution"
+                                                      : "close other programs";
+  throw Error(ErrorCode::kOutOfMemory, "drawing '" + data_path + "' at " + std::to_string(plan.width) + " x " +
+                                           std::to_string(plan.height) + " needs about " + format_bytes(needed) +
+                                           " of memory and " + format_bytes(plan.available) + " are free: " + advice +
+                                           " or use a larger machine");
 }
 
 }  // namespace tetravox::tool

@@ -2,8 +2,10 @@
 
 #include "tetravox/error.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <initializer_list>
 
 namespace tetravox::tool {
 namespace {
@@ -16,7 +18,8 @@ struct ClassificationEntry {
 
 constexpr std::array<ClassificationEntry, 3> kClassifications{
     {{Classification::kPreintegrated, "preintegrated",
-      "the function is integrated along each segment: integrators antiderivative, partial (default)"},
+      "the function is integrated along each segment: integrators antiderivative, partial, table3d, polynomial, "
+      "cylindrical (default)"},
      {Classification::kPost, "post", "the function is looked up at samples: integrator post; for comparison"},
      {Classification::kPre, "pre",
       "grids: the function is looked up at the values, colours are interpolated: integrator pre; for comparison"}}};
@@ -41,6 +44,43 @@ Integrator integrator_of(Classification classification) {
                            (is_grid ? "grid" : "mesh") + ": leave it out";
   if (is_option) throw UsageError(option + ": " + text);
   throw Error(ErrorCode::kInvalidArgument, "the scene's render." + key + " " + text);
+}
+
+/// Adds a line for each option of tables that the integrator has no use for.
+void check_tables(const PreintegrationOptions& tables, Integrator integrator, std::vector<std::string>& lines) {
+  const auto is_one_of = [&](std::initializer_list<Integrator> users) {
+    return std::find(users.begin(), users.end(), integrator) != users.end();
+  };
+  const auto check = [&](bool is_given, const std::string& option, std::initializer_list<Integrator> users) {
+    if (!is_given || is_one_of(users)) return;
+    std::string names;
+    for (const Integrator user : users) names += (names.empty() ? "" : ", ") + name_of(user);
+    lines.push_back(option + " changes nothing: it is for --integrator " + names + ", and this picture is drawn by " +
+                    name_of(integrator));
+  };
+  constexpr Integrator kTable = Integrator::kTable3d, kPolynomial = Integrator::kPolynomial,
+                       kCylindrical = Integrator::kCylindrical;
+  check(tables.scalars.has_value(), "--preintegration-size", {kTable, kPolynomial});
+  check(tables.length_spacing.has_value(), "--preintegration-lengths", {kTable});
+  check(tables.opacity.has_value(), "--preintegration-opacity", {kPolynomial});
+  check(tables.planes.has_value(), "--preintegration-planes", {kCylindrical});
+  check(tables.tile.has_value(), "--preintegration-tile", {kCylindrical});
+  check(tables.steps.has_value(), "--preintegration-steps", {kTable, kPolynomial, kCylindrical});
+  check(tables.bits.has_value(), "--preintegration-bits", {kTable, kPolynomial, kCylindrical});
+  check(tables.use_incremental.has_value(), "--preintegration-incremental", {kTable, kPolynomial});
+}
+
+void override_tables(const PreintegrationOptions& tables, PreintegrationSettings& settings) {
+  settings.scalars = tables.scalars.value_or(settings.scalars);
+  settings.lengths = tables.lengths.value_or(settings.lengths);
+  settings.length_spacing = tables.length_spacing.value_or(settings.length_spacing);
+  settings.degree = tables.degree.value_or(settings.degree);
+  settings.opacity = tables.opacity.value_or(settings.opacity);
+  settings.planes = tables.planes.value_or(settings.planes);
+  settings.tile = tables.tile.value_or(settings.tile);
+  settings.steps = tables.steps.value_or(settings.steps);
+  settings.bits = tables.bits.value_or(settings.bits);
+  settings.use_incremental = tables.use_incremental.value_or(settings.use_incremental);
 }
 
 }  // namespace
@@ -71,6 +111,7 @@ void override_method(const MethodOptions& method, RenderSettings& settings) {
     settings.integrator = integrator_of(*method.classification);
   settings.integrator = method.integrator.value_or(settings.integrator);
   settings.entry_order = method.entry_order.value_or(settings.entry_order);
+  override_tables(method.preintegration, settings.preintegration);
   settings.filter = method.filter.value_or(settings.filter);
   settings.samples = method.samples.value_or(settings.samples);
   settings.samples_per_voxel = method.samples_per_voxel.value_or(settings.samples_per_voxel);
@@ -93,10 +134,14 @@ std::vector<std::string> check_method(const MethodOptions& method, const RenderS
   require(is_grid || settings.integrator != Integrator::kPre, method.integrator || method.classification,
           method.classification ? "--classification pre" : "--integrator pre", "integrator 'pre'");
 
+  require(!is_grid || settings.integrator != Integrator::kCylindrical, method.integrator.has_value(),
+          "--integrator cylindrical", "integrator 'cylindrical'");
+
   std::vector<std::string> lines;
   if (!method.use_gl && (method.entry_order || method.gl_device))
     lines.push_back(std::string(method.entry_order ? "--entry-order" : "--gl-device") +
                     " changes nothing: it is for --backend gl");
+  check_tables(method.preintegration, settings.integrator, lines);
   const std::string integrator = name_of(settings.integrator);
   if (method.samples && settings.integrator != Integrator::kPost)
     lines.push_back("--samples changes nothing: it is for --integrator post, and this picture is drawn by " +

@@ -5,6 +5,7 @@
 #include "apps/tetravox/options_effects.h"
 #include "apps/tetravox/options_histogram.h"
 #include "apps/tetravox/options_multidimensional.h"
+#include "apps/tetravox/options_preintegration.h"
 #include "apps/tetravox/text.h"
 
 #include "tetravox/error.h"
@@ -165,8 +166,7 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.entry_order, named(entry_order_from_name)));
   add(app, "--source", "NAME", "Where segments come from (tetravox list methods)",
       store(method.source, named(source_from_name)));
-  add(app, "--integrator", "NAME", "What turns a segment into colour (tetravox list methods)",
-      store(method.integrator, named(integrator_from_name)));
+  add_integrator(app, method);
   add(app, "--classification", "NAME", "Where the function is applied: preintegrated (default), post, pre",
       store(method.classification, parse_classification));
   add(app, "--filter", "NAME", "How a grid's field is reconstructed (tetravox list methods; default: linear)",

@@ -71,6 +71,14 @@ enum class Classification {
   kPre             ///< at the values, before they are interpolated
 };
 
+/// Tables of ray integrals; see `PreintegrationSettings`.
+struct PreintegrationOptions {
+  std::optional<int> scalars, lengths, degree, planes, tile, steps, bits;
+  std::optional<LengthSpacing> length_spacing;
+  std::optional<OpacityModel> opacity;
+  std::optional<bool> use_incremental;
+};
+
 struct MethodOptions {
   bool use_gl = false;
   std::optional<int> gl_device;
@@ -78,6 +86,7 @@ struct MethodOptions {
   std::optional<Source> source;
   std::optional<Classification> classification;
   std::optional<Integrator> integrator;
+  PreintegrationOptions preintegration;
   std::optional<Filter> filter;
   std::optional<int> samples;
   std::optional<double> samples_per_voxel;

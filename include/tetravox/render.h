@@ -13,6 +13,7 @@
 #include "tetravox/lighting.h"
 #include "tetravox/mesh.h"
 #include "tetravox/multidimensional.h"
+#include "tetravox/preintegration.h"
 #include "tetravox/progress.h"
 #include "tetravox/transfer_function.h"
 
@@ -36,7 +37,10 @@ enum class Integrator {
   kAntiderivative,  ///< tables of antiderivatives, split where the error estimate asks (default)
   kPartial,         ///< exact for piecewise linear functions (Moreland and Angel 2004; Espinha and Celes 2005)
   kPost,            ///< post-classification: N point samples a segment, for comparison
-  kPre              ///< pre-classification: colours and extinctions at the values, interpolated; for comparison
+  kPre,             ///< pre-classification: colours and extinctions at the values, interpolated; for comparison
+  kTable3d,         ///< full pre-integration in a 3D table (Roettger, Kraus, Ertl 2000); for comparison
+  kPolynomial,      ///< separable opacity, polynomial chromaticity (Guthe et al. 2002); for comparison
+  kCylindrical      ///< the 3D table as a 2D atlas, meshes only (Roettger and Ertl 2002); for comparison
 };
 
 /// What makes homogeneous regions fade: extinction is multiplied by how fast the scalar changes, in units of value
@@ -61,11 +65,12 @@ struct RenderSettings {
   int height = 512;
   std::optional<Source> source;  ///< empty: the one for the data
   Integrator integrator = Integrator::kAntiderivative;
-  double tolerance = 2e-3;         ///< error in colour that a picture may have, in [1e-7, 1]: half an 8-bit step
-  int samples = 8;                 ///< samples a segment (post), in [1, 4096]
-  Filter filter;                   ///< how a grid's field is reconstructed
-  double samples_per_voxel = 0.0;  ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
+  double tolerance = 2e-3;                ///< error in colour that a picture may have, in [1e-7, 1]: half an 8-bit step
+  int samples = 8;                        ///< samples a segment (post), in [1, 4096]
+  PreintegrationSettings preintegration;  ///< tables of table3d, polynomial and cylindrical
   EntryOrder entry_order = EntryOrder::kLists;  ///< meshes, gl
+  Filter filter;                                ///< how a grid's field is reconstructed
+  double samples_per_voxel = 0.0;  ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
   Lighting lighting;
   std::vector<Isosurface> surfaces;
   Clipping clipping;
@@ -81,7 +86,7 @@ struct RenderSettings {
 
 struct RenderStatistics {
   double seconds = 0.0;
-  double plan_seconds = 0.0;       ///< of these, what is done only after a new transfer function, filter or tolerance
+  double plan_seconds = 0.0;  ///< of these, what is done only after a new transfer function, filter, tolerance or table
   std::uint64_t segments = 0;      ///< ray-cell segments, as walked or marched
   std::uint64_t rays = 0;          ///< rays that met the data
   std::uint64_t stopped_rays = 0;  ///< rays stopped by the bound on steps (damaged meshes only)
@@ -93,7 +98,7 @@ struct RenderStatistics {
 };
 
 /// Names of enumerators as on the command line and in scene files ("walk", "march"; "antiderivative", "partial",
-/// "post", "pre"), and back.
+/// "post", "pre", "table3d", "polynomial", "cylindrical"), and back.
 std::string name_of(Source source);
 std::string name_of(Integrator integrator);
 std::string name_of(EntryOrder order);      ///< "lists", "peeling"
@@ -103,6 +108,12 @@ Source source_from_name(const std::string& name);
 Integrator integrator_from_name(const std::string& name);
 EntryOrder entry_order_from_name(const std::string& name);
 OpacityWeight opacity_weight_from_name(const std::string& name);
+/// The integrator with its number, as command lines and scene files have it: "polynomial=2"; its name where it has
+/// none.
+std::string format_integrator(const RenderSettings& settings);
+/// The same read: sets the integrator, and `PreintegrationSettings::degree` where the text has a number.
+/// @throws Error (kInvalidArgument) that lists the names there are, or the numbers.
+void parse_integrator(const std::string& text, RenderSettings& settings);
 /// Names, one-line descriptions with the paper.
 std::vector<std::pair<std::string, std::string>> source_names();
 std::vector<std::pair<std::string, std::string>> integrator_names();

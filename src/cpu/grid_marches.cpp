@@ -1,5 +1,8 @@
 #include "src/cpu/grid_marches.h"
 
+#include "src/cpu/preintegration_cache.h"
+#include "tetravox/error.h"
+
 namespace tetravox::cpu {
 
 Marches choose_marches(const Kernels& kernels, bool is_constant, const RenderSettings& settings) {
@@ -13,6 +16,12 @@ Marches choose_marches(const Kernels& kernels, bool is_constant, const RenderSet
       return both(has_rate ? kernels.sample_post : kernels.march_post, nullptr);
     case Integrator::kPre:
       return both(has_rate ? kernels.sample_densities : kernels.march_densities, nullptr);
+    case Integrator::kTable3d:
+    case Integrator::kPolynomial:
+      return both(has_rate ? kernels.tables.sample : kernels.tables.march, nullptr);
+    case Integrator::kCylindrical:
+      throw Error(ErrorCode::kUnsupported,
+                  "the integrator cylindrical is for meshes; grids have the same table as table3d");
     case Integrator::kAntiderivative:
       break;
   }
@@ -27,6 +36,7 @@ Marches choose_illustrated_marches(const Kernels& kernels, bool is_constant, Int
   if (integrator == Integrator::kPartial)
     return both(kernels.illustrate_march_partial, kernels.illustrate_stride_partial);
   if (integrator == Integrator::kPost) return both(kernels.illustrate_march_post, nullptr);
+  if (is_of_tables(integrator)) return both(kernels.tables.illustrate_march, nullptr);
   return {kernels.illustrate_march_antiderivative, kernels.illustrate_stride_antiderivative,
           kernels.illustrate_march_gentle_antiderivative, kernels.illustrate_stride_gentle_antiderivative};
 }

@@ -9,6 +9,7 @@
 #include "src/cpu/grid_shadows.h"
 #include "src/cpu/illustration.h"
 #include "src/cpu/planned_brick.h"
+#include "src/cpu/preintegration_cache.h"
 #include "src/grid/summaries.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/extinction_integral.h"
@@ -124,13 +125,6 @@ struct TileCounts {
   std::uint64_t segments = 0, rays = 0;
 };
 
-/// World length of a voxel: of the cube with its volume.
-double mean_spacing(const grid::GridFrame& frame) {
-  const auto& m = frame.world_from_grid;
-  return std::cbrt(std::abs(m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
-                            m[2] * (m[3] * m[7] - m[4] * m[6])));
-}
-
 class GridRenderer final : public scene::FrameRenderer {
  public:
   explicit GridRenderer(const PreparedGrid& grid)
@@ -147,6 +141,7 @@ class GridRenderer final : public scene::FrameRenderer {
     optics::build_steepness_table(control_points_, scalar_map().stored_from_value(range.min),
                                   scalar_map().stored_from_value(range.max), steepness_);
     has_centroids_ = false;
+    preintegration_.invalidate();
     function_ = function;
     domain_.clear();
     is_planned_ = false;
@@ -169,13 +164,14 @@ class GridRenderer final : public scene::FrameRenderer {
               RenderStatistics& statistics) override;
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
-    return estimate_render_memory(grid_.data, settings);
+    return estimate_render_memory(grid_.data, settings) -
+           std::min(preintegration_.bytes(), preintegration_bytes(settings));
   }
 
   std::uint64_t bytes() const override {
     return antiderivative_.bytes() + control_points_.bytes() + extinction_.bytes() + plans_.size() * sizeof(BrickPlan) +
            (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_ +
-           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes();
+           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() + preintegration_.bytes();
   }
 
   std::vector<Source> sources() const override { return {Source::kMarch}; }
@@ -189,6 +185,7 @@ class GridRenderer final : public scene::FrameRenderer {
   }
   const PreparedGrid& drawn() const { return field_.middles ? *field_.middles : grid_; }
   void prepare_filter(const RenderSettings& settings);
+  void prepare_preintegration(const RenderSettings& settings);
   void fill_lattices(const FrameParts& frame, std::uint32_t index, Workspace& workspace, MarchBrick& brick) const;
   GradientSource choose_gradients(const RenderSettings& settings) const;
   void describe(const RenderSettings& settings, const scene::FrameContext& context, FrameParts& frame);
@@ -221,6 +218,7 @@ class GridRenderer final : public scene::FrameRenderer {
   optics::CentroidTable centroids_;  // made at the first frame with light
   std::uint64_t function_number_ = 0;
   ShadowCache shadows_;
+  PreintegrationCache preintegration_;
   bool is_planned_ = false;
   PlanSettings planned_for_;
   std::vector<BrickPlan> plans_;
@@ -316,6 +314,14 @@ void GridRenderer::prepare_filter(const RenderSettings& settings) {
   FilteredField field = make_filtered_field(grid_, settings.filter);
   field_ = std::move(field);
   frame_ = grid::make_grid_frame(drawn().data.shape);
+}
+
+/// Makes the table of ray integrals, where these are looked up. Constant cells need none.
+void GridRenderer::prepare_preintegration(const RenderSettings& settings) {
+  if (!is_of_tables(settings.integrator) || domain_.is_set() || is_constant(settings)) return;
+  const double longest = settings.samples_per_voxel > 0.0 ? mean_spacing(frame_) / settings.samples_per_voxel
+                                                          : longest_cell_diagonal(frame_);
+  preintegration_.prepare({function_, scalar_map(), grid_.scalar_range, longest}, settings);
 }
 
 PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
@@ -450,8 +456,10 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
   if (has_effects) require_effects(settings, is_constant(settings));
   const support::Timer timer;
   prepare_filter(settings);
+  prepare_preintegration(settings);
+  const double table_seconds = timer.seconds();
   if (has_effects) prepare_shadows(camera, settings, context);
-  const double shadow_seconds = timer.seconds();
+  const double shadow_seconds = timer.seconds() - table_seconds;
   plan(settings);
   statistics.plan_seconds = timer.seconds() - shadow_seconds;
   draw({camera, settings, has_effects}, context, image, statistics);
@@ -494,6 +502,7 @@ void GridRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   tables.domain = &domain;
   frame.view = scene::make_grid_view(drawn(), frame_, pass.camera, settings.width, settings.height);
   frame.rays = scene::make_rays(frame.view.camera, frame.view.world_per_local);
+  preintegration_.attach(tables);
   frame.bins = bin_bricks(drawn(), frame_, visible_, frame.view);
   frame.grid = {&frame_, lattice_field(settings, kernels), plan_sources(settings), plans_};
   frame.others = domain_.make_fields(frame.grid.field);
@@ -560,7 +569,8 @@ std::uint64_t estimate_render_memory(const GridData& grid, const RenderSettings&
         static_cast<std::uint64_t>(settings.threads > 0 ? settings.threads : support::hardware_threads());
     shadows = threads * std::min<std::uint64_t>(bricks * cpu::BrickStore::kBytesOfBrick, cpu::BrickStore::kMostBytes);
   }
-  return pixels * 4 * sizeof(float) + bricks * of_brick + coefficients + shadows + kTables;
+  return pixels * 4 * sizeof(float) + bricks * of_brick + coefficients + shadows + kTables +
+         cpu::preintegration_bytes(settings);
 }
 
 }  // namespace tetravox

@@ -4,6 +4,8 @@
 #include "src/cpu/frame_renderers.h"
 #include "src/cpu/illustration.h"
 #include "src/cpu/mesh_shadows.h"
+#include "src/cpu/preintegration_cache.h"
+#include "src/mesh/cell_vertices.h"
 #include "src/mesh/gradients.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/extinction_integral.h"
@@ -12,12 +14,15 @@
 #include "src/scene/eye_cells.h"
 #include "src/support/memory.h"
 #include "src/support/threads.h"
+#include "src/support/timer.h"
 #include "tetravox/error.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,7 +44,12 @@ auto choose_walk(const Kernels& kernels, Association association, Integrator int
       return kernels.walk_post;
     case Integrator::kPre:
       throw Error(ErrorCode::kUnsupported,
-                  "pre-classification is for grids; meshes are drawn with antiderivative, partial or post");
+                  "pre-classification is for grids; meshes are drawn with antiderivative, partial, post, table3d, "
+                  "polynomial or cylindrical");
+    case Integrator::kTable3d:
+    case Integrator::kPolynomial:
+    case Integrator::kCylindrical:
+      return kernels.tables.walk;
     case Integrator::kAntiderivative:
       break;
   }
@@ -50,6 +60,7 @@ auto choose_illustrated_walk(const Kernels& kernels, Association association, In
   if (association == Association::kCell) return kernels.illustrate_walk_cells;
   if (integrator == Integrator::kPartial) return kernels.illustrate_walk_partial;
   if (integrator == Integrator::kPost) return kernels.illustrate_walk_post;
+  if (is_of_tables(integrator)) return kernels.tables.illustrate_walk;
   return is_gentle ? kernels.illustrate_walk_gentle_antiderivative : kernels.illustrate_walk_antiderivative;
 }
 
@@ -68,6 +79,23 @@ void clip_rays(const ClipScene& clip, const scene::RayGrid& grid, ClipScratch& s
     ray.clip_end = static_cast<std::uint32_t>(tile.clips.size());
     return found.empty();
   });
+}
+
+/// World length of the longest edge: no segment in a tetrahedron is longer.
+double find_longest_edge(const PreparedMesh& mesh) {
+  tbb::enumerable_thread_specific<double> longest(0.0);  // squared
+  mesh::visit_cells(mesh, [&](std::uint32_t, const mesh::CellVertices& ids) {
+    double& found = longest.local();
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j) {
+        const Vertex &a = mesh.vertices[ids[i]], &b = mesh.vertices[ids[j]];
+        const double x = static_cast<double>(a.x) - b.x, y = static_cast<double>(a.y) - b.y,
+                     z = static_cast<double>(a.z) - b.z;
+        found = std::max(found, x * x + y * y + z * z);
+      }
+  });
+  const double largest = longest.combine([](double a, double b) { return std::max(a, b); });
+  return std::max(std::sqrt(largest) * mesh.world_per_local, static_cast<double>(std::numeric_limits<float>::min()));
 }
 
 /// Everything that the tiles of one frame share.
@@ -123,6 +151,7 @@ class MeshRenderer final : public scene::FrameRenderer {
     if (mesh_.association == Association::kPoint)
       optics::build_antiderivative_table(function, map, mesh_.scalar_range, diagonal(), antiderivative_);
     has_centroids_ = false;
+    preintegration_.invalidate();
     function_ = function;
     domain_ = {};
     ++function_number_;
@@ -143,14 +172,15 @@ class MeshRenderer final : public scene::FrameRenderer {
               RenderStatistics& statistics) override;
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
-    return estimate_render_memory(vertices_ ? 0 : mesh_.vertices.size(), mesh_.boundary.size(), settings);
+    const std::uint64_t held = std::min(preintegration_.bytes(), preintegration_bytes(settings));
+    return estimate_render_memory(vertices_ ? 0 : mesh_.vertices.size(), mesh_.boundary.size(), settings) - held;
   }
 
   std::uint64_t bytes() const override {
     return (vertices_ ? mesh_.vertices.size() * 4 * sizeof(float) : 0) + frame_bytes_ + antiderivative_.bytes() +
            control_points_.bytes() + extinction_.bytes() + boundary_.bytes() +
            gradients_.records.size() * sizeof(mesh::Gradient) + centroids_.sums.size() * sizeof(std::int32_t) +
-           shadows_.bytes() + domain_.bytes() + occupancy_.sums.size() * sizeof(std::int32_t);
+           shadows_.bytes() + domain_.bytes() + preintegration_.bytes() + occupancy_.sums.size() * sizeof(std::int32_t);
   }
 
   std::vector<Source> sources() const override { return {Source::kWalk}; }
@@ -163,6 +193,7 @@ class MeshRenderer final : public scene::FrameRenderer {
   using WalkKernel = WalkStatistics (*)(const WalkJob&);
   WalkKernel choose_kernel(const Kernels& kernels, const RenderSettings& settings, bool has_effects) const;
   void prepare_effects(const RenderSettings& settings);
+  void prepare_preintegration(const RenderSettings& settings);
   void describe(const RenderSettings& settings, const scene::FrameContext& context, Frame& frame,
                 Illustration& illustration) const;
   void draw(const Pass& pass, const scene::FrameContext& context, Image& image, RenderStatistics& statistics);
@@ -180,8 +211,10 @@ class MeshRenderer final : public scene::FrameRenderer {
   MeshGradients gradients_;
   std::uint64_t function_number_ = 0;
   ShadowCache shadows_;
-  std::unique_ptr<float[]> vertices_;  // of the camera's frame; allocated at the first one
-  std::uint64_t frame_bytes_ = 0;      // of what the last frame needed beside the vertices
+  PreintegrationCache preintegration_;
+  std::optional<double> longest_edge_;  // world length; found at the first frame with tables of ray integrals
+  std::unique_ptr<float[]> vertices_;   // of the camera's frame; allocated at the first one
+  std::uint64_t frame_bytes_ = 0;       // of what the last frame needed beside the vertices
 };
 
 DomainScalars MeshRenderer::scalars() const {
@@ -237,6 +270,14 @@ void MeshRenderer::prepare_effects(const RenderSettings& settings) {
   gradients_.method = method;
 }
 
+/// Makes the table of ray integrals, where these are looked up. With cell data segments need none.
+void MeshRenderer::prepare_preintegration(const RenderSettings& settings) {
+  if (!is_of_tables(settings.integrator) || domain_.is_set() || mesh_.association == Association::kCell) return;
+  if (!longest_edge_) longest_edge_ = find_longest_edge(mesh_);
+  preintegration_.prepare({function_, {mesh_.scalar_offset, mesh_.scalar_scale}, mesh_.scalar_range, *longest_edge_},
+                          settings);
+}
+
 /// Fills the effects of a frame, and points it at the gradients.
 void MeshRenderer::describe(const RenderSettings& settings, const scene::FrameContext& context, Frame& frame,
                             Illustration& illustration) const {
@@ -270,6 +311,9 @@ void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, 
   if (!vertices_) vertices_ = std::make_unique_for_overwrite<float[]>(4 * mesh_.vertices.size());
   const bool has_effects = wants_effects(settings) || domain_.is_set();
   if (domain_.is_set()) require_domain_settings(domain_, settings);
+  const support::Timer timer;
+  prepare_preintegration(settings);
+  statistics.plan_seconds = timer.seconds();
   if (has_effects) {
     require_effects(settings, mesh_.association == Association::kCell);
     prepare_effects(settings);
@@ -302,6 +346,7 @@ void MeshRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   build_occupancy(domain_, settings.tolerance, diagonal(), occupancy_);
   const DomainFunction domain = make_domain_function(domain_, occupancy_, settings.tolerance, diagonal());
   tables.domain = &domain;
+  preintegration_.attach(tables);
   const auto walk = choose_kernel(kernels, settings, pass.has_effects);
   const ClipScene clip = make_clip_scene(settings.clipping, context.clip_volumes,
                                          scene::world_from_camera(frame.camera, mesh_.origin, mesh_.world_per_local));
@@ -357,7 +402,8 @@ std::uint64_t estimate_render_memory(std::uint64_t vertices, std::uint64_t bound
   const bool has_rays = settings.lighting.shadows == ShadowKind::kExact;
   const std::uint64_t shadows = has_rays ? 64 + 96 * settings.lighting.lights.size() : 0;
   return pixels * 4 * sizeof(float) + vertices * 4 * sizeof(float) +
-         boundary_faces * (sizeof(BoundaryFace) + 4 * sizeof(cpu::BinnedFace) + shadows) + tables;
+         boundary_faces * (sizeof(BoundaryFace) + 4 * sizeof(cpu::BinnedFace) + shadows) + tables +
+         cpu::preintegration_bytes(settings);
 }
 
 }  // namespace tetravox

@@ -21,7 +21,7 @@ constexpr std::array<Name<Source>, 2> kSources{
     {{Source::kWalk, "walk", "meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)"},
      {Source::kMarch, "march", "grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)"}}};
 
-constexpr std::array<Name<Integrator>, 4> kIntegrators{
+constexpr std::array<Name<Integrator>, 7> kIntegrators{
     {{Integrator::kAntiderivative, "antiderivative",
       "tables of antiderivatives, split where the error estimate asks (Max, Hanrahan, Crawfis 1990; Lum, Wilson, Ma "
       "2004)"},
@@ -29,7 +29,24 @@ constexpr std::array<Name<Integrator>, 4> kIntegrators{
       "exact for piecewise linear functions (Moreland and Angel 2004; Espinha and Celes 2005)"},
      {Integrator::kPost, "post", "post-classification: point samples along each segment, for comparison"},
      {Integrator::kPre, "pre",
-      "pre-classification: colours and extinctions at the values, interpolated; for comparison"}}};
+      "pre-classification: colours and extinctions at the values, interpolated; for comparison"},
+     {Integrator::kTable3d, "table3d",
+      "full pre-integration in a table over both scalars and the length; for comparison (Roettger, Kraus, Ertl 2000)"},
+     {Integrator::kPolynomial, "polynomial",
+      "polynomial=N: separable opacity, chromaticity as a polynomial of degree N, 0 to 4, in the length; for "
+      "comparison "
+      "(Guthe, Roettger, Schieber, Strasser, Ertl 2002)"},
+     {Integrator::kCylindrical, "cylindrical",
+      "meshes: the table in sheared cylindrical coordinates, tiles of a 2D atlas; for comparison (Roettger and Ertl "
+      "2002)"}}};
+
+constexpr std::array<Name<LengthSpacing>, 2> kLengthSpacings{
+    {{LengthSpacing::kUniform, "uniform", "equal steps (Roettger, Kraus, Ertl 2000)"},
+     {LengthSpacing::kLogarithmic, "logarithmic", "fine where short (after Kraus, Qiao, Ebert 2004)"}}};
+
+constexpr std::array<Name<OpacityModel>, 2> kOpacityModels{
+    {{OpacityModel::kExponential, "exponential", "1 - exp(-x) of the optical depth x"},
+     {OpacityModel::kLinear, "linear", "min(1, x), for comparison"}}};
 
 constexpr std::array<Name<EntryOrder>, 2> kEntryOrders{
     {{EntryOrder::kLists, "lists", "a sorted list for each pixel (Yang, Hensley, Gruen, Thibieroz 2010)"},
@@ -101,6 +118,38 @@ Integrator integrator_from_name(const std::string& name) {
   return enumerator_from_name(kIntegrators, name, "integrator");
 }
 std::string name_of(EntryOrder order) { return name_of_enumerator(kEntryOrders, order); }
+
+std::string format_integrator(const RenderSettings& settings) {
+  std::string text = name_of(settings.integrator);
+  if (settings.integrator == Integrator::kPolynomial)
+    text.append(1, '=').append(std::to_string(settings.preintegration.degree));
+  return text;
+}
+
+void parse_integrator(const std::string& text, RenderSettings& settings) {
+  const std::size_t sign = text.find('=');
+  const Integrator integrator = integrator_from_name(text.substr(0, sign));
+  if (sign != std::string::npos) {
+    const std::string number = text.substr(sign + 1);
+    if (integrator != Integrator::kPolynomial)
+      throw Error(ErrorCode::kInvalidArgument,
+                  "the integrator " + name_of(integrator) + " has no number: leave out '=" + number + "'");
+    if (number.size() != 1 || number[0] < '0' || number[0] - '0' > kLargestDegree)
+      throw Error(ErrorCode::kInvalidArgument,
+                  "the integrator 'polynomial=" + number + "': the degree is a whole number from 0 to 4");
+    settings.preintegration.degree = number[0] - '0';
+  }
+  settings.integrator = integrator;
+}
+
+std::string name_of(LengthSpacing spacing) { return name_of_enumerator(kLengthSpacings, spacing); }
+std::string name_of(OpacityModel opacity) { return name_of_enumerator(kOpacityModels, opacity); }
+LengthSpacing length_spacing_from_name(const std::string& name) {
+  return enumerator_from_name(kLengthSpacings, name, "spacing of lengths");
+}
+OpacityModel opacity_model_from_name(const std::string& name) {
+  return enumerator_from_name(kOpacityModels, name, "opacity model");
+}
 std::string name_of(OpacityWeight weight) { return name_of_enumerator(kOpacityWeights, weight); }
 std::string name_of(GradientMethod method) { return name_of_enumerator(kGradientMethods, method); }
 std::string name_of(LightKind kind) { return name_of_enumerator(kLightKinds, kind); }

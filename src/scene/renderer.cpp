@@ -68,6 +68,10 @@ void validate_settings(const RenderSettings& settings) {
   if (!(settings.samples_per_voxel >= 0.0 && settings.samples_per_voxel <= kHighestRate))
     fail("samples per voxel must be between 0 (as the tolerance asks) and 64");
   if (!(settings.opacity_weight_scale > 0.0)) fail("the scale of the opacity weight must be above 0");
+  validate_preintegration(settings.preintegration);
+  if (settings.integrator == Integrator::kTable3d && settings.preintegration.scalars > kLargestTableSize)
+    fail("scalars of a three-dimensional table: " + std::to_string(settings.preintegration.scalars) +
+         " is not between 2 and " + std::to_string(kLargestTableSize));
   validate_lighting(settings.lighting);
   validate_isosurfaces(settings.surfaces);
   validate_clipping(settings.clipping);

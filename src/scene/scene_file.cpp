@@ -94,13 +94,34 @@ void read_image(const JsonPlace& place, Scene& scene) {
   }
 }
 
+void read_preintegration(const JsonPlace& place, PreintegrationSettings& tables) {
+  place.require_keys(
+      {"scalars", "lengths", "length_spacing", "opacity", "planes", "tile", "steps", "bits", "incremental"});
+  const auto read_integer = [&](const char* key, int& number) {
+    if (const auto at = place.find(key)) number = static_cast<int>(at->integer(1, kLargestSampleCount));
+  };
+  read_integer("scalars", tables.scalars);
+  read_integer("lengths", tables.lengths);
+  read_integer("planes", tables.planes);
+  read_integer("tile", tables.tile);
+  read_integer("steps", tables.steps);
+  read_integer("bits", tables.bits);
+  if (const auto spacing = place.find("length_spacing"))
+    tables.length_spacing = at_place(*spacing, [&] { return length_spacing_from_name(spacing->string()); });
+  if (const auto opacity = place.find("opacity"))
+    tables.opacity = at_place(*opacity, [&] { return opacity_model_from_name(opacity->string()); });
+  if (const auto use = place.find("incremental")) tables.use_incremental = use->boolean();
+  at_place(place, [&] { validate_preintegration(tables); });
+}
+
 void read_render(const JsonPlace& place, RenderSettings& settings) {
-  place.require_keys({"source", "integrator", "filter", "tolerance", "samples", "samples_per_voxel", "opacity_weight",
-                      "opacity_weight_scale", "early_ray_termination"});
+  place.require_keys({"source", "integrator", "preintegration", "filter", "tolerance", "samples", "samples_per_voxel",
+                      "opacity_weight", "opacity_weight_scale", "early_ray_termination"});
   if (const auto source = place.find("source"))
     settings.source = at_place(*source, [&] { return source_from_name(source->string()); });
   if (const auto integrator = place.find("integrator"))
-    settings.integrator = at_place(*integrator, [&] { return integrator_from_name(integrator->string()); });
+    at_place(*integrator, [&] { parse_integrator(integrator->string(), settings); });
+  if (const auto tables = place.find("preintegration")) read_preintegration(*tables, settings.preintegration);
   if (const auto filter = place.find("filter"))
     settings.filter = at_place(*filter, [&] { return filter_from_name(filter->string()); });
   if (const auto tolerance = place.find("tolerance")) {
@@ -180,10 +201,28 @@ Json write_camera(const Camera& camera) {
   return json;
 }
 
+/// What is not as by default; the degree is part of the integrator's name.
+Json write_preintegration(const PreintegrationSettings& tables) {
+  const PreintegrationSettings usual;
+  Json json;
+  if (tables.scalars != usual.scalars) json["scalars"] = tables.scalars;
+  if (tables.lengths != usual.lengths) json["lengths"] = tables.lengths;
+  if (tables.length_spacing != usual.length_spacing) json["length_spacing"] = name_of(tables.length_spacing);
+  if (tables.opacity != usual.opacity) json["opacity"] = name_of(tables.opacity);
+  if (tables.planes != usual.planes) json["planes"] = tables.planes;
+  if (tables.tile != usual.tile) json["tile"] = tables.tile;
+  if (tables.steps != usual.steps) json["steps"] = tables.steps;
+  if (tables.bits != usual.bits) json["bits"] = tables.bits;
+  if (tables.use_incremental != usual.use_incremental) json["incremental"] = tables.use_incremental;
+  return json;
+}
+
 Json write_render(const RenderSettings& settings) {
   Json json;
   if (settings.source) json["source"] = name_of(*settings.source);
-  json["integrator"] = name_of(settings.integrator);
+  json["integrator"] = format_integrator(settings);
+  const Json tables = write_preintegration(settings.preintegration);
+  if (!tables.empty()) json["preintegration"] = tables;
   if (settings.filter != Filter{}) json["filter"] = name_of(settings.filter);
   json["tolerance"] = settings.tolerance;
   json["samples"] = settings.samples;

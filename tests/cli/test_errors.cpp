@@ -35,6 +35,13 @@ TEST_F(Errors, WrongValuesNameTheirOption) {
                                                        {"--association", "edge"},
                                                        {"--source", "splat"},
                                                        {"--integrator", "none"},
+                                                       {"--integrator", "polynomial=5"},
+                                                       {"--integrator", "table3d=2"},
+                                                       {"--preintegration-size", "1"},
+                                                       {"--preintegration-size", "9,9,9"},
+                                                       {"--preintegration-lengths", "cubic"},
+                                                       {"--preintegration-bits", "24"},
+                                                       {"--preintegration-steps", "0"},
                                                        {"--instruction-set", "mmx"},
                                                        {"--backend", "vulkan"},
                                                        {"--gl-device", "-1"},
@@ -94,6 +101,13 @@ TEST_F(Errors, FilesThatAreWrong) {
   expect_error(run({"render", "good.vtk", "--array", "pressure"}), 1, {"pressure", "ramp"});
   expect_error(run({"render", "good.vtk", "--camera-position", "0,0,0", "--camera-focal-point", "0,0,0"}), 1,
                {"camera"});
+}
+
+TEST_F(Errors, CylindricalTablesAreForMeshes) {
+  expect_error(run({"render", "builtin:hydrogen", "--integrator", "cylindrical"}), 2,
+               {"--integrator cylindrical", "is for meshes", "builtin:hydrogen"});
+  write("s.json", R"({"tetravox":1,"data":{"file":"builtin:hydrogen"},"render":{"integrator":"cylindrical"}})");
+  expect_error(run({"render", "s.json"}), 1, {"render.integrator 'cylindrical'", "is for meshes"});
 }
 
 TEST_F(Errors, OutputThatCannotBeWritten) {

@@ -35,8 +35,9 @@ TEST_F(Listing, Topics) {
   expect_text({"list", "devices"}, {"Devices for --backend gl"});
   expect_text({"list", "environments"}, {"builtin:studio", "builtin:sky", "builtin:room"});
   expect_text({"list", "methods"},
-              {"walk", "antiderivative", "partial", "post", "Gradients (--gradient)", "central", "Shadows (--shadows)",
-               "exact", "Opacity weights (--opacity-weight)", "scalar-difference", "Instruction sets"});
+              {"walk", "antiderivative", "partial", "post", "table3d", "polynomial=N", "cylindrical", "2000)",
+               "Gradients (--gradient)", "central", "Shadows (--shadows)", "exact",
+               "Opacity weights (--opacity-weight)", "scalar-difference", "Instruction sets"});
 }
 
 TEST_F(Listing, InfoOfAFile) {

@@ -74,6 +74,32 @@ TEST_F(Render, StatisticsHaveTheirKeys) {
   EXPECT_GT(json.at("prepare").at("tetrahedra").get<std::uint64_t>(), 0u);
 }
 
+TEST_F(Render, TablesOfRayIntegrals) {
+  const std::vector<std::vector<std::string>> variants = {
+      {"--integrator", "table3d", "--preintegration-size", "60,20", "--preintegration-lengths", "uniform"},
+      {"--integrator", "polynomial=3", "--preintegration-size", "60", "--preintegration-opacity", "linear"},
+      {"--integrator", "cylindrical", "--preintegration-planes", "9", "--preintegration-tile", "30",
+       "--preintegration-bits", "12"}};
+  std::set<std::vector<float>> pictures;
+  for (std::vector<std::string> arguments : variants) {
+    arguments.insert(arguments.begin(), "builtin:duct");
+    arguments.insert(arguments.end(),
+                     {"--preintegration-steps", "8", "--save-scene", "s.json", "--statistics", "t.json"});
+    const std::vector<float> picture = draw(arguments);
+    EXPECT_TRUE(pictures.insert(picture).second);
+    EXPECT_EQ(draw({"s.json"}), picture);
+    const auto json = nlohmann::json::parse(read("t.json"));
+    EXPECT_EQ(json.at("integrator").get<std::string>(), arguments[2].substr(0, arguments[2].find('=')));
+    EXPECT_GT(json.at("seconds").at("transfer_function").get<double>(), 0.0);
+    EXPECT_GT(json.at("bytes").at("frame").get<std::uint64_t>(), 0u);
+  }
+  const Result result = run({"render", "builtin:sphere", "--preintegration-planes", "9", "--resolution", "16,16"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.err.find("--preintegration-planes changes nothing: it is for --integrator cylindrical"),
+            std::string::npos)
+      << result.err;
+}
+
 TEST_F(Render, OptionsChangeThePicture) {
   const std::string input = "builtin:sphere";
   std::set<std::vector<float>> pictures{draw({input})};

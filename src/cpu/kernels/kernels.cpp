@@ -27,6 +27,7 @@ const std::vector<NamedKernels>& all_kernels() {
       add_walk_kernels(made.back().kernels);
       add_march_kernels(made.back().kernels);
       add_effect_kernels(made.back().kernels);
+      add_table_kernels(made.back().kernels);
       add_domain_kernels(made.back().kernels);
     }
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());

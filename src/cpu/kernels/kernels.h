@@ -8,6 +8,9 @@
 #include "src/cpu/kernels/domain.h"
 #include "src/cpu/kernels/effects.h"
 #include "src/optics/antiderivative_table.h"
+#include "src/optics/cylindrical_atlas.h"
+#include "src/optics/polynomial_table.h"
+#include "src/optics/preintegration_table.h"
 #include "src/optics/steepness_table.h"
 #include "src/optics/transparency_table.h"
 #include "src/scene/camera_frame.h"
@@ -15,6 +18,7 @@
 #include "tetravox/mesh.h"
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -49,6 +53,18 @@ struct IntegratorTables {
   bool may_overshoot = false;              ///< whether scalars may lie beyond the range of the data
   const Effects* effects = nullptr;        ///< of the kernels with effects
   const DomainFunction* domain = nullptr;  ///< of those for functions of several variables
+  /// Ray integrals: the one that is not null counts.
+  const optics::PreintegrationTable* preintegration = nullptr;
+  const optics::PolynomialTable* polynomial = nullptr;
+  const optics::CylindricalAtlas* atlas = nullptr;
+};
+
+/// Segments one by one; stored scalars, world lengths.
+struct SegmentArrays {
+  const float* scalar_front = nullptr;
+  const float* scalar_back = nullptr;
+  const float* length = nullptr;
+  std::size_t count = 0;
 };
 
 /// Where a ray enters the mesh.
@@ -235,6 +251,17 @@ struct Kernels {
     std::uint64_t (*march_cells)(const MarchJob& job, int count) = nullptr;
   };
   OfDomain domain_2d, domain_3d, separate_colors;
+  /// The same for the integrators that look ray integrals up: table3d, polynomial, cylindrical.
+  struct OfTables {
+    WalkStatistics (*walk)(const WalkJob& job) = nullptr;
+    std::uint64_t (*march)(const MarchJob& job, int count) = nullptr;
+    std::uint64_t (*sample)(const MarchJob& job, int count) = nullptr;
+    WalkStatistics (*illustrate_walk)(const WalkJob& job) = nullptr;
+    std::uint64_t (*illustrate_march)(const MarchJob& job, int count) = nullptr;
+    /// `colors`, [count][4]: what a frame takes for each segment; for tests.
+    void (*look_up)(const IntegratorTables& tables, const SegmentArrays& segments, float* colors) = nullptr;
+  };
+  OfTables tables;
 };
 
 /// Names of the instruction sets that were compiled in and that this machine has, best first.

@@ -21,6 +21,8 @@ TEST(Kernels, EveryInstructionSetHasEveryKernel) {
     EXPECT_NE(kernels.walk_partial, nullptr) << name;
     EXPECT_NE(kernels.walk_post, nullptr) << name;
     EXPECT_NE(kernels.walk_cells, nullptr) << name;
+    EXPECT_NE(kernels.tables.walk, nullptr) << name;
+    EXPECT_NE(kernels.tables.look_up, nullptr) << name;
   }
 }
 

@@ -123,5 +123,72 @@ TEST_F(SmallPictures, NeedSensibleSettings) {
   EXPECT_THROW(renderer.render(kCamera, {}), Error) << "no transfer function yet";
 }
 
+class TablesOfRayIntegrals : public testing::Test {
+ protected:
+  PreparedMesh mesh_ = cpu::make_test_mesh("sphere");
+  Renderer renderer_{mesh_};
+  RenderSettings settings_;
+
+  TablesOfRayIntegrals() {
+    settings_.width = settings_.height = 16;
+    settings_.integrator = Integrator::kTable3d;
+    settings_.preintegration.scalars = 96;
+    renderer_.set_transfer_function(make_gentle());
+  }
+  /// Seconds of making tables in a frame.
+  double plan() {
+    RenderStatistics statistics;
+    renderer_.render(kCamera, settings_, &statistics);
+    return statistics.plan_seconds;
+  }
+};
+
+TEST_F(TablesOfRayIntegrals, AreMadeAnewOnlyWhereSomethingHasChanged) {
+  const double first = plan();
+  EXPECT_LT(plan(), 0.1 * first);
+  settings_.preintegration.planes = 3;  // of another integrator
+  EXPECT_LT(plan(), 0.1 * first);
+  renderer_.set_transfer_function(make_steep());
+  EXPECT_GT(plan(), 0.1 * first);
+  settings_.preintegration.bits = 8;
+  EXPECT_GT(plan(), 0.1 * first);
+  settings_.integrator = Integrator::kAntiderivative;
+  EXPECT_LT(plan(), 0.1 * first);
+}
+
+TEST_F(TablesOfRayIntegrals, CountInBytesAndEstimates) {
+  const auto bytes_with = [&](Integrator integrator) {
+    settings_.integrator = integrator;
+    plan();
+    return renderer_.bytes();
+  };
+  const std::uint64_t without = bytes_with(Integrator::kAntiderivative);
+  EXPECT_EQ(bytes_with(Integrator::kTable3d) - without, 96u * 96 * 64 * 16);
+  EXPECT_EQ(bytes_with(Integrator::kPolynomial) - without, 3u * 96 * 96 * 16 + 4096);
+  EXPECT_EQ(bytes_with(Integrator::kCylindrical) - without, 9u * 8 * 64 * 64 * 16);
+
+  RenderSettings plain;
+  settings_.integrator = Integrator::kTable3d;
+  plain.width = plain.height = 16;
+  EXPECT_EQ(estimate_render_memory(10, 10, settings_) - estimate_render_memory(10, 10, plain), 96u * 96 * 64 * 16);
+}
+
+TEST_F(TablesOfRayIntegrals, OutOfRangeAreRefused) {
+  settings_.preintegration.scalars = 600;
+  const auto message = [&] {
+    try {
+      plan();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message(), "scalars of a three-dimensional table: 600 is not between 2 and 512");
+  settings_.integrator = Integrator::kPolynomial;
+  EXPECT_EQ(message(), "");
+  settings_.preintegration.degree = 9;
+  EXPECT_EQ(message(), "degree of the chromaticity: 9 is not between 0 and 4");
+}
+
 }  // namespace
 }  // namespace tetravox

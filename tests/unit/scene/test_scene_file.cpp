@@ -197,6 +197,35 @@ TEST(SceneFile, ReadsWhatGridsNeed) {
   EXPECT_FALSE(open.data.raw.dimensions || open.data.raw.type || open.data.raw.spacing || open.data.raw.is_big_endian);
 }
 
+TEST(SceneFile, KeepsTablesOfRayIntegrals) {
+  const Scene scene =
+      parse(kHead + R"(,"render":{"integrator":"polynomial=3","preintegration":{"scalars":300,"lengths":40,
+    "length_spacing":"uniform","opacity":"linear","planes":9,"tile":17,"steps":5,"bits":12,"incremental":false}}})");
+  EXPECT_EQ(scene.settings.integrator, Integrator::kPolynomial);
+  const PreintegrationSettings wanted{.scalars = 300,
+                                      .lengths = 40,
+                                      .length_spacing = LengthSpacing::kUniform,
+                                      .degree = 3,
+                                      .opacity = OpacityModel::kLinear,
+                                      .planes = 9,
+                                      .tile = 17,
+                                      .steps = 5,
+                                      .bits = 12,
+                                      .use_incremental = false};
+  EXPECT_EQ(scene.settings.preintegration, wanted);
+  const Scene again = parse(format_scene(scene));
+  EXPECT_EQ(again.settings.integrator, Integrator::kPolynomial);
+  EXPECT_EQ(again.settings.preintegration, wanted);
+  EXPECT_EQ(format_scene(parse(kHead + "}")).find("preintegration"), std::string::npos);
+
+  const auto render = [](const std::string& members) { return kHead + R"(,"render":{)" + members + "}}"; };
+  expect_bad(render(R"("integrator":"polynomial=5")"), "render.integrator", "0 to 4");
+  expect_bad(render(R"("integrator":"partial=2")"), "render.integrator", "has no number");
+  expect_bad(render(R"("preintegration":{"bits":9})"), "render.preintegration", "8, 12, 16 or 32");
+  expect_bad(render(R"("preintegration":{"length_spacing":"cubic"})"), "length_spacing", "logarithmic");
+  expect_bad(render(R"("preintegration":{"size":9})"), "render.preintegration", "size");
+}
+
 TEST(SceneFile, SaysWhatIsWrongAboutGrids) {
   const auto expect_bad_data = [](const std::string& members, const char* where, const char* what) {
     expect_bad(R"({"tetravox":1,"data":{"file":"a.raw",)" + members + "}}", where, what);

@@ -1,0 +1,349 @@
+/// Measures the tables of pre-integration again as the papers do: time, and errors against exact integrals. Prints
+/// Markdown.
+///
+///     preintegration_tables [--json FILE] [--quick]
+
+#include "src/optics/antiderivative_table.h"
+#include "src/optics/cylindrical_atlas.h"
+#include "src/optics/pair_integrals.h"
+#include "src/optics/polynomial_table.h"
+#include "src/optics/preintegration_table.h"
+#include "src/optics/segment_integral.h"
+#include "src/support/threads.h"
+#include "src/support/timer.h"
+#include "tetravox/transfer_function.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace tetravox::optics;
+using tetravox::LengthSpacing;
+using tetravox::OpacityModel;
+using tetravox::OpticalFunction;
+using tetravox::PreintegrationSettings;
+using Json = nlohmann::ordered_json;
+
+constexpr tetravox::ValueRange kRange{0.0, 1.0};
+constexpr double kLongest = 1.0;
+
+/// Numbers as people read them: three digits that count.
+std::string format(double number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", number);
+  return text.data();
+}
+
+/// A table on the page and in the file.
+class Report {
+ public:
+  void begin(const std::string& key, const std::string& title, const std::vector<std::string>& columns) {
+    key_ = key;
+    columns_ = columns;
+    json_[key] = {{"title", title}, {"rows", Json::array()}};
+    std::cout << "\n## " << title << "\n\n|";
+    for (const std::string& column : columns) std::cout << " " << column << " |";
+    std::cout << "\n|";
+    for (std::size_t i = 0; i < columns.size(); ++i) std::cout << "---|";
+    std::cout << "\n";
+  }
+  void add(const std::vector<Json>& cells) {
+    Json row;
+    std::cout << "|";
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      row[columns_[i]] = cells[i];
+      std::cout << " "
+                << (cells[i].is_number_float() ? format(cells[i].get<double>())
+                    : cells[i].is_string()     ? cells[i].get<std::string>()
+                                               : cells[i].dump())
+                << " |";
+    }
+    std::cout << std::endl;
+    json_[key_]["rows"].push_back(row);
+  }
+  const Json& json() const { return json_; }
+
+ private:
+  Json json_;
+  std::string key_;
+  std::vector<std::string> columns_;
+};
+
+struct NamedFunction {
+  std::string name;
+  OpticalFunction function;
+};
+
+/// A ramp and five peaks, whose extinction makes the longest segment as deep as `depth` where it is densest.
+std::vector<NamedFunction> make_functions(double depth) {
+  std::vector<NamedFunction> functions;
+  for (const char* preset : {"viridis:ramp", "rainbow:peaks=5"}) {
+    OpticalFunction function =
+        make_optical_function(tetravox::make_preset(preset, {kRange, false, false}), kLongest, 1e-3);
+    double largest = 0.0;
+    for (const tetravox::OpticalPoint& point : function.points) largest = std::max(largest, point.extinction);
+    for (tetravox::OpticalPoint& point : function.points) point.extinction *= depth / (largest * kLongest);
+    functions.push_back({preset, function});
+  }
+  return functions;
+}
+
+PreintegrationSource source_of(const OpticalFunction& function) { return {function, {}, kRange, kLongest}; }
+
+double median_seconds(int rounds, const std::function<void()>& work) {
+  std::vector<double> seconds;
+  for (int i = 0; i < rounds; ++i) {
+    const tetravox::support::Timer timer;
+    work();
+    seconds.push_back(timer.seconds());
+  }
+  std::sort(seconds.begin(), seconds.end());
+  return seconds[seconds.size() / 2];
+}
+
+struct Errors {
+  double rms = 0.0, largest = 0.0;
+};
+
+/// Of premultiplied colour and opacity, at segments drawn at random.
+class Samples {
+ public:
+  Samples(const OpticalFunction& function, int count, const std::function<void(std::mt19937&, double[3])>& draw) {
+    const SegmentIntegral exact(function, kRange);
+    std::mt19937 random(11);
+    for (int i = 0; i < count; ++i) {
+      Sample sample;
+      draw(random, sample.place);
+      sample.exact = exact.integrate(sample.place[0], sample.place[1], sample.place[2]);
+      samples_.push_back(sample);
+    }
+  }
+
+  Errors measure(const std::function<SegmentColor(float, float, float)>& look_up) const {
+    Errors errors;
+    for (const Sample& sample : samples_) {
+      const SegmentColor found = look_up(static_cast<float>(sample.place[0]), static_cast<float>(sample.place[1]),
+                                         static_cast<float>(sample.place[2]));
+      const std::array<float, 4> numbers{found.red, found.green, found.blue, found.opacity};
+      for (std::size_t c = 0; c < 4; ++c) {
+        const double wanted = c < 3 ? sample.exact.color[c] : sample.exact.opacity;
+        const double error = std::abs(static_cast<double>(numbers[c]) - wanted);
+        errors.largest = std::max(errors.largest, error);
+        errors.rms += error * error / (4.0 * static_cast<double>(samples_.size()));
+      }
+    }
+    errors.rms = std::sqrt(errors.rms);
+    return errors;
+  }
+
+ private:
+  struct Sample {
+    double place[3] = {};  // scalars, length
+    Slab exact;
+  };
+  std::vector<Sample> samples_;
+};
+
+/// Anywhere.
+void draw_segment(std::mt19937& random, double place[3]) {
+  std::uniform_real_distribution<double> unit;
+  place[0] = unit(random);
+  place[1] = unit(random);
+  place[2] = unit(random) * kLongest;
+}
+
+/// Of table3d, as times, and by the paper's sizes.
+void time_full_tables(int rounds, Report& report) {
+  report.begin("full_table_seconds",
+               "Seconds of a full table, 64 steps an entry (Roettger and Ertl 2002, table 2: software)",
+               {"size", "straightforward", "incremental", "times faster"});
+  const OpticalFunction function = make_functions(10.0)[1].function;
+  for (const auto& [scalars, lengths] : {std::array{64, 32}, std::array{128, 64}, std::array{256, 128}}) {
+    PreintegrationSettings settings;
+    settings.scalars = scalars;
+    settings.lengths = lengths;
+    settings.length_spacing = LengthSpacing::kUniform;
+    PreintegrationTable table;
+    const auto build = [&](bool use_incremental) {
+      settings.use_incremental = use_incremental;
+      return median_seconds(rounds, [&] { build_preintegration_table(source_of(function), settings, table); });
+    };
+    const double anew = build(false), incremental = build(true);
+    const std::string side = std::to_string(scalars);
+    report.add({side + " x " + side + " x " + std::to_string(lengths), anew, incremental, anew / incremental});
+  }
+}
+
+/// Errors of the entries themselves.
+void measure_bits_and_steps(bool is_quick, Report& report) {
+  report.begin("entry_errors",
+               "Errors of the entries of a 64 x 64 x 32 table by bits and steps (Roettger and Ertl 2002, table 1, in "
+               "software)",
+               {"function", "bits", "steps", "RMS", "maximum"});
+  constexpr int kScalars = 64, kLengths = 32;
+  for (const NamedFunction& named : make_functions(10.0)) {
+    const Samples samples(named.function, is_quick ? 2000 : 20000, [](std::mt19937& random, double place[3]) {
+      const auto node = [&](int count) {
+        return static_cast<double>(random() % static_cast<unsigned>(count)) / (count - 1);
+      };
+      place[0] = node(kScalars);
+      place[1] = node(kScalars);
+      place[2] = node(kLengths) * kLongest;
+    });
+    for (const int bits : {8, 12, 16, 32})
+      for (const int steps : {1, 4, 16, 64, 256}) {
+        PreintegrationSettings settings;
+        settings.scalars = kScalars;
+        settings.lengths = kLengths;
+        settings.length_spacing = LengthSpacing::kUniform;
+        settings.bits = bits;
+        settings.steps = steps;
+        settings.use_incremental = false;
+        PreintegrationTable table;
+        build_preintegration_table(source_of(named.function), settings, table);
+        const Errors errors =
+            samples.measure([&](float a, float b, float l) { return eval_preintegration_table(table, a, b, l); });
+        report.add({named.name, bits, steps, errors.rms, errors.largest});
+      }
+  }
+}
+
+/// What is left of the exact integral by each approximation, at 512 x 512.
+void measure_polynomials(bool is_quick, Report& report) {
+  report.begin(
+      "polynomial_errors",
+      "Errors of separable opacity and polynomial chromaticity, 512 x 512 (Guthe et al. 2002, figures 3, 4, 7)",
+      {"function", "depth of the longest", "opacity", "degree", "RMS", "maximum"});
+  for (const double depth : {1.0, 4.0, 16.0})
+    for (const NamedFunction& named : make_functions(depth)) {
+      const Samples samples(named.function, is_quick ? 2000 : 20000, draw_segment);
+      for (const OpacityModel opacity : {OpacityModel::kLinear, OpacityModel::kExponential})
+        for (const int degree : {0, 1, 2, 4}) {
+          PreintegrationSettings settings;
+          settings.scalars = 512;
+          settings.degree = degree;
+          settings.opacity = opacity;
+          PolynomialTable table;
+          build_polynomial_table(source_of(named.function), settings, table);
+          const Errors errors =
+              samples.measure([&](float a, float b, float l) { return eval_polynomial_table(table, a, b, l); });
+          report.add({named.name, depth, name_of(opacity), degree, errors.rms, errors.largest});
+        }
+    }
+}
+
+void time_polynomials(int rounds, Report& report) {
+  report.begin("set_up_seconds", "Seconds of setting up 512 x 512 (Guthe et al. 2002, table 4: software)",
+               {"table", "straightforward", "incremental"});
+  const OpticalFunction function = make_functions(10.0)[1].function;
+  for (const int degree : {1, 2, 4}) {
+    PreintegrationSettings settings;
+    settings.scalars = 512;
+    settings.degree = degree;
+    PolynomialTable table;
+    const auto build = [&](bool use_incremental) {
+      settings.use_incremental = use_incremental;
+      return median_seconds(rounds, [&] { build_polynomial_table(source_of(function), settings, table); });
+    };
+    const double anew = build(false), incremental = build(true);
+    report.add({"polynomial, n = " + std::to_string(degree), anew, incremental});
+  }
+  AntiderivativeTable table;
+  const double seconds =
+      median_seconds(10 * rounds, [&] { build_antiderivative_table(function, {}, kRange, kLongest, table); });
+  report.add({"antiderivatives", seconds, "-"});
+}
+
+/// The three methods at sizes of about the same memory.
+void measure_methods(bool is_quick, Report& report) {
+  report.begin("method_errors", "Errors and memory of the methods (depth of the longest segment: 10)",
+               {"function", "method", "size", "MB", "RMS", "maximum"});
+  for (const NamedFunction& named : make_functions(10.0)) {
+    // Short ones count as in meshes: half of them are below an eighth.
+    const Samples samples(named.function, is_quick ? 2000 : 20000, [](std::mt19937& random, double place[3]) {
+      draw_segment(random, place);
+      place[1] = std::clamp(place[0] + 0.5 * (place[1] - 0.5), 0.0, 1.0);
+      place[2] *= place[2] * place[2];
+    });
+    const PreintegrationSource source = source_of(named.function);
+    const auto add = [&](const std::string& method, const std::string& size, std::uint64_t bytes,
+                         const Errors& errors) {
+      report.add({named.name, method, size, static_cast<double>(bytes) / 1e6, errors.rms, errors.largest});
+    };
+    for (const int scalars : {64, 128, 256})
+      for (const LengthSpacing spacing : {LengthSpacing::kUniform, LengthSpacing::kLogarithmic}) {
+        PreintegrationSettings settings;
+        settings.scalars = scalars;
+        settings.lengths = scalars / 2;
+        settings.length_spacing = spacing;
+        PreintegrationTable table;
+        build_preintegration_table(source, settings, table);
+        add("table3d, " + name_of(spacing), std::to_string(scalars) + ", " + std::to_string(scalars / 2), table.bytes(),
+            samples.measure([&](float a, float b, float l) { return eval_preintegration_table(table, a, b, l); }));
+      }
+    for (const int scalars : {128, 512})
+      for (const int degree : {1, 2, 4}) {
+        PreintegrationSettings settings;
+        settings.scalars = scalars;
+        settings.degree = degree;
+        PolynomialTable table;
+        build_polynomial_table(source, settings, table);
+        add("polynomial=" + std::to_string(degree), std::to_string(scalars), table.bytes(),
+            samples.measure([&](float a, float b, float l) { return eval_polynomial_table(table, a, b, l); }));
+      }
+    for (const auto& [planes, tile] : {std::array{33, 32}, std::array{65, 64}, std::array{129, 128}}) {
+      PreintegrationSettings settings;
+      settings.planes = planes;
+      settings.tile = tile;
+      CylindricalAtlas atlas;
+      build_cylindrical_atlas(source, settings, atlas);
+      add("cylindrical", std::to_string(planes) + ", " + std::to_string(tile), atlas.bytes(),
+          samples.measure([&](float a, float b, float l) { return eval_cylindrical_atlas(atlas, a, b, l); }));
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string json_file;
+  bool is_quick = false;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--quick") {
+      is_quick = true;
+    } else if (argument == "--json" && i + 1 < argc) {
+      json_file = argv[++i];
+    } else {
+      std::cerr << "usage: preintegration_tables [--json FILE] [--quick]\n";
+      return 2;
+    }
+  }
+  const int rounds = is_quick ? 1 : 5;
+  Report report;
+  std::cout << "# Tables of pre-integration, made by " << tetravox::support::hardware_threads() << " threads\n";
+  time_full_tables(rounds, report);
+  measure_bits_and_steps(is_quick, report);
+  measure_polynomials(is_quick, report);
+  time_polynomials(rounds, report);
+  measure_methods(is_quick, report);
+  if (json_file.empty()) return 0;
+  std::ofstream out(json_file);
+  Json json = report.json();
+  json["threads"] = tetravox::support::hardware_threads();
+  out << json.dump(1) << "\n";
+  if (out.flush()) return 0;
+  std::cerr << "preintegration_tables: cannot write " << json_file << "\n";
+  return 1;
+}

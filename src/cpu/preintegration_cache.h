@@ -1,0 +1,45 @@
+#pragma once
+
+/// The table of ray integrals that a renderer draws with, from frame to frame as long as nothing changes.
+
+#include "src/cpu/kernels/kernels.h"
+#include "src/optics/cylindrical_atlas.h"
+#include "src/optics/polynomial_table.h"
+#include "src/optics/preintegration_table.h"
+#include "tetravox/render.h"
+
+#include <cstdint>
+
+namespace tetravox::cpu {
+
+/// Whether the integrator looks whole ray integrals up.
+bool is_of_tables(Integrator integrator);
+
+/// Bytes of the table that a frame needs; 0 for other integrators.
+std::uint64_t preintegration_bytes(const RenderSettings& settings);
+
+/// One table at a time.
+class PreintegrationCache {
+ public:
+  /// The function has changed. Its memory is kept for the next table.
+  void invalidate() { integrator_ = Integrator::kAntiderivative; }
+
+  /// Makes the table where it is not at hand.
+  /// @throws Error: kOutOfMemory.
+  void prepare(const optics::PreintegrationSource& source, const RenderSettings& settings);
+
+  /// Hands it to a frame. Valid as long as this.
+  void attach(IntegratorTables& tables) const;
+
+  std::uint64_t bytes() const { return table_.bytes() + polynomial_.bytes() + atlas_.bytes(); }
+
+ private:
+  Integrator integrator_ = Integrator::kAntiderivative;  // that the table at hand is for; this one: none
+  PreintegrationSettings settings_;
+  double longest_ = 0.0;
+  optics::PreintegrationTable table_;
+  optics::PolynomialTable polynomial_;
+  optics::CylindricalAtlas atlas_;
+};
+
+}  // namespace tetravox::cpu
