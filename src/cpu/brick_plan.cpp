@@ -1,6 +1,6 @@
 #include "src/cpu/brick_plan.h"
 
-#include "src/cpu/preintegration_cache.h"
+#include "src/scene/preintegration_cache.h"
 #include "src/support/threads.h"
 
 #include <algorithm>
@@ -101,7 +101,7 @@ class Planner {
     plan.is_curved = !is_good(bricks.deviation[0][brick]);
     if (!is_even_ || bricks.has_missing[brick] != 0 || has_surface(min, max)) return plan;
     // Tables of ray integrals reach as far as a cell does.
-    if (is_of_tables(settings_.integrator)) return plan;
+    if (scene::is_of_tables(settings_.integrator)) return plan;
     if (settings_.integrator != Integrator::kPost)
       choose_step(
           bricks, brick, [&](float deviation) { return is_good(deviation, kStridesPerRate); }, plan);

@@ -1,7 +1,7 @@
 #include "src/cpu/domain.h"
 
 #include "src/cpu/brick_plan.h"
-#include "src/cpu/preintegration_cache.h"
+#include "src/scene/preintegration_cache.h"
 #include "tetravox/error.h"
 
 #include <algorithm>
@@ -131,7 +131,7 @@ void require_domain_settings(const Domain& domain, const RenderSettings& setting
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::kUnsupported, message); };
   const std::string what = domain.is_table() ? "a function of several variables" : "colour from another array";
   if (settings.integrator == Integrator::kPre || settings.integrator == Integrator::kPost ||
-      is_of_tables(settings.integrator))
+      scene::is_of_tables(settings.integrator))
     fail(what + " is integrated along each segment: integrator '" + name_of(settings.integrator) +
          "' does not go with it, leave it out");
   if (settings.samples_per_voxel > 0.0)

@@ -1,6 +1,6 @@
 #include "src/cpu/grid_marches.h"
 
-#include "src/cpu/preintegration_cache.h"
+#include "src/scene/preintegration_cache.h"
 #include "tetravox/error.h"
 
 namespace tetravox::cpu {
@@ -36,7 +36,7 @@ Marches choose_illustrated_marches(const Kernels& kernels, bool is_constant, Int
   if (integrator == Integrator::kPartial)
     return both(kernels.illustrate_march_partial, kernels.illustrate_stride_partial);
   if (integrator == Integrator::kPost) return both(kernels.illustrate_march_post, nullptr);
-  if (is_of_tables(integrator)) return both(kernels.tables.illustrate_march, nullptr);
+  if (scene::is_of_tables(integrator)) return both(kernels.tables.illustrate_march, nullptr);
   return {kernels.illustrate_march_antiderivative, kernels.illustrate_stride_antiderivative,
           kernels.illustrate_march_gentle_antiderivative, kernels.illustrate_stride_gentle_antiderivative};
 }

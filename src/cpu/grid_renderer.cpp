@@ -9,12 +9,12 @@
 #include "src/cpu/grid_shadows.h"
 #include "src/cpu/illustration.h"
 #include "src/cpu/planned_brick.h"
-#include "src/cpu/preintegration_cache.h"
 #include "src/grid/summaries.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/extinction_integral.h"
 #include "src/optics/steepness_table.h"
 #include "src/optics/transparency_table.h"
+#include "src/scene/preintegration_cache.h"
 #include "src/support/threads.h"
 #include "src/support/timer.h"
 #include "tetravox/error.h"
@@ -165,7 +165,7 @@ class GridRenderer final : public scene::FrameRenderer {
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
     return estimate_render_memory(grid_.data, settings) -
-           std::min(preintegration_.bytes(), preintegration_bytes(settings));
+           std::min(preintegration_.bytes(), scene::preintegration_bytes(settings));
   }
 
   std::uint64_t bytes() const override {
@@ -218,7 +218,7 @@ class GridRenderer final : public scene::FrameRenderer {
   optics::CentroidTable centroids_;  // made at the first frame with light
   std::uint64_t function_number_ = 0;
   ShadowCache shadows_;
-  PreintegrationCache preintegration_;
+  scene::PreintegrationCache preintegration_;
   bool is_planned_ = false;
   PlanSettings planned_for_;
   std::vector<BrickPlan> plans_;
@@ -318,7 +318,7 @@ void GridRenderer::prepare_filter(const RenderSettings& settings) {
 
 /// Makes the table of ray integrals, where these are looked up. Constant cells need none.
 void GridRenderer::prepare_preintegration(const RenderSettings& settings) {
-  if (!is_of_tables(settings.integrator) || domain_.is_set() || is_constant(settings)) return;
+  if (!scene::is_of_tables(settings.integrator) || domain_.is_set() || is_constant(settings)) return;
   const double longest = settings.samples_per_voxel > 0.0 ? mean_spacing(frame_) / settings.samples_per_voxel
                                                           : longest_cell_diagonal(frame_);
   preintegration_.prepare({function_, scalar_map(), grid_.scalar_range, longest}, settings);
@@ -502,7 +502,7 @@ void GridRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   tables.domain = &domain;
   frame.view = scene::make_grid_view(drawn(), frame_, pass.camera, settings.width, settings.height);
   frame.rays = scene::make_rays(frame.view.camera, frame.view.world_per_local);
-  preintegration_.attach(tables);
+  attach_preintegration(preintegration_, tables);
   frame.bins = bin_bricks(drawn(), frame_, visible_, frame.view);
   frame.grid = {&frame_, lattice_field(settings, kernels), plan_sources(settings), plans_};
   frame.others = domain_.make_fields(frame.grid.field);
@@ -570,7 +570,7 @@ std::uint64_t estimate_render_memory(const GridData& grid, const RenderSettings&
     shadows = threads * std::min<std::uint64_t>(bricks * cpu::BrickStore::kBytesOfBrick, cpu::BrickStore::kMostBytes);
   }
   return pixels * 4 * sizeof(float) + bricks * of_brick + coefficients + shadows + kTables +
-         cpu::preintegration_bytes(settings);
+         scene::preintegration_bytes(settings);
 }
 
 }  // namespace tetravox

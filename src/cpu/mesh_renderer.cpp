@@ -4,14 +4,14 @@
 #include "src/cpu/frame_renderers.h"
 #include "src/cpu/illustration.h"
 #include "src/cpu/mesh_shadows.h"
-#include "src/cpu/preintegration_cache.h"
-#include "src/mesh/cell_vertices.h"
+#include "src/mesh/edges.h"
 #include "src/mesh/gradients.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/extinction_integral.h"
 #include "src/optics/transparency_table.h"
 #include "src/scene/camera_frame.h"
 #include "src/scene/eye_cells.h"
+#include "src/scene/preintegration_cache.h"
 #include "src/support/memory.h"
 #include "src/support/threads.h"
 #include "src/support/timer.h"
@@ -60,7 +60,7 @@ auto choose_illustrated_walk(const Kernels& kernels, Association association, In
   if (association == Association::kCell) return kernels.illustrate_walk_cells;
   if (integrator == Integrator::kPartial) return kernels.illustrate_walk_partial;
   if (integrator == Integrator::kPost) return kernels.illustrate_walk_post;
-  if (is_of_tables(integrator)) return kernels.tables.illustrate_walk;
+  if (scene::is_of_tables(integrator)) return kernels.tables.illustrate_walk;
   return is_gentle ? kernels.illustrate_walk_gentle_antiderivative : kernels.illustrate_walk_antiderivative;
 }
 
@@ -79,23 +79,6 @@ void clip_rays(const ClipScene& clip, const scene::RayGrid& grid, ClipScratch& s
     ray.clip_end = static_cast<std::uint32_t>(tile.clips.size());
     return found.empty();
   });
-}
-
-/// World length of the longest edge: no segment in a tetrahedron is longer.
-double find_longest_edge(const PreparedMesh& mesh) {
-  tbb::enumerable_thread_specific<double> longest(0.0);  // squared
-  mesh::visit_cells(mesh, [&](std::uint32_t, const mesh::CellVertices& ids) {
-    double& found = longest.local();
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < i; ++j) {
-        const Vertex &a = mesh.vertices[ids[i]], &b = mesh.vertices[ids[j]];
-        const double x = static_cast<double>(a.x) - b.x, y = static_cast<double>(a.y) - b.y,
-                     z = static_cast<double>(a.z) - b.z;
-        found = std::max(found, x * x + y * y + z * z);
-      }
-  });
-  const double largest = longest.combine([](double a, double b) { return std::max(a, b); });
-  return std::max(std::sqrt(largest) * mesh.world_per_local, static_cast<double>(std::numeric_limits<float>::min()));
 }
 
 /// Everything that the tiles of one frame share.
@@ -172,7 +155,7 @@ class MeshRenderer final : public scene::FrameRenderer {
               RenderStatistics& statistics) override;
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
-    const std::uint64_t held = std::min(preintegration_.bytes(), preintegration_bytes(settings));
+    const std::uint64_t held = std::min(preintegration_.bytes(), scene::preintegration_bytes(settings));
     return estimate_render_memory(vertices_ ? 0 : mesh_.vertices.size(), mesh_.boundary.size(), settings) - held;
   }
 
@@ -211,7 +194,7 @@ class MeshRenderer final : public scene::FrameRenderer {
   MeshGradients gradients_;
   std::uint64_t function_number_ = 0;
   ShadowCache shadows_;
-  PreintegrationCache preintegration_;
+  scene::PreintegrationCache preintegration_;
   std::optional<double> longest_edge_;  // world length; found at the first frame with tables of ray integrals
   std::unique_ptr<float[]> vertices_;   // of the camera's frame; allocated at the first one
   std::uint64_t frame_bytes_ = 0;       // of what the last frame needed beside the vertices
@@ -272,8 +255,8 @@ void MeshRenderer::prepare_effects(const RenderSettings& settings) {
 
 /// Makes the table of ray integrals, where these are looked up. With cell data segments need none.
 void MeshRenderer::prepare_preintegration(const RenderSettings& settings) {
-  if (!is_of_tables(settings.integrator) || domain_.is_set() || mesh_.association == Association::kCell) return;
-  if (!longest_edge_) longest_edge_ = find_longest_edge(mesh_);
+  if (!scene::is_of_tables(settings.integrator) || domain_.is_set() || mesh_.association == Association::kCell) return;
+  if (!longest_edge_) longest_edge_ = mesh::find_longest_edge(mesh_);
   preintegration_.prepare({function_, {mesh_.scalar_offset, mesh_.scalar_scale}, mesh_.scalar_range, *longest_edge_},
                           settings);
 }
@@ -346,7 +329,7 @@ void MeshRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   build_occupancy(domain_, settings.tolerance, diagonal(), occupancy_);
   const DomainFunction domain = make_domain_function(domain_, occupancy_, settings.tolerance, diagonal());
   tables.domain = &domain;
-  preintegration_.attach(tables);
+  attach_preintegration(preintegration_, tables);
   const auto walk = choose_kernel(kernels, settings, pass.has_effects);
   const ClipScene clip = make_clip_scene(settings.clipping, context.clip_volumes,
                                          scene::world_from_camera(frame.camera, mesh_.origin, mesh_.world_per_local));
@@ -403,7 +386,7 @@ std::uint64_t estimate_render_memory(std::uint64_t vertices, std::uint64_t bound
   const std::uint64_t shadows = has_rays ? 64 + 96 * settings.lighting.lights.size() : 0;
   return pixels * 4 * sizeof(float) + vertices * 4 * sizeof(float) +
          boundary_faces * (sizeof(BoundaryFace) + 4 * sizeof(cpu::BinnedFace) + shadows) + tables +
-         cpu::preintegration_bytes(settings);
+         scene::preintegration_bytes(settings);
 }
 
 }  // namespace tetravox

@@ -24,6 +24,12 @@ Image render(const PreparedGrid& grid, const OpticalFunction& function, const Ca
   return renderer.render(camera, settings);
 }
 
+void cpu::attach_preintegration(const scene::PreintegrationCache& cache, IntegratorTables& tables) {
+  tables.preintegration = cache.table();
+  tables.polynomial = cache.polynomial();
+  tables.atlas = cache.atlas();
+}
+
 void cpu::note_backend(const RenderSettings& settings, RenderStatistics& statistics) {
   statistics.backend = "cpu";
   statistics.instruction_set = settings.instruction_set.empty() ? best_instruction_set() : settings.instruction_set;

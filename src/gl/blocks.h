@@ -22,6 +22,10 @@ struct WalkBlock {
 struct TablesBlock {
 #include "src/gl/shaders/integrators/tables_block.glsl"
 };
-static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 6 * 16);
+struct PreintegrationBlock {
+#include "src/gl/shaders/integrators/preintegration_block.glsl"
+};
+static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 6 * 16 &&
+              sizeof(PreintegrationBlock) == 3 * 16);
 
 }  // namespace tetravox::gl

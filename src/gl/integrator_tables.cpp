@@ -13,14 +13,25 @@ constexpr GLuint kTablesBinding = 1;
 
 const IntegratorShader kCell{"cell data", "integrators/cell.glsl", {}};
 const IntegratorShader kPartial{"partial", "integrators/partial.glsl", {}};
+const IntegratorShader kTable3d{"table3d", "integrators/table3d.glsl", {}};
+const IntegratorShader kCylindrical{"cylindrical", "integrators/cylindrical.glsl", {}};
 const IntegratorShader kPost{"post", "integrators/post.glsl", {}};
 
 /// `has_coarse`: the table has places that are too coarse; `is_beyond`: scalars may lie beyond its ends.
 IntegratorShader antiderivative_shader(bool has_coarse, bool is_beyond) {
   IntegratorShader shader{"antiderivative", "integrators/antiderivative.glsl", {}};
-  if (has_coarse) shader.defines.emplace_back("HAS_COARSE");
-  if (is_beyond) shader.defines.emplace_back("BEYOND");
-  for (const std::string& define : shader.defines) shader.name += ", " + define;
+  if (has_coarse) shader.defines.emplace_back("HAS_COARSE", "1");
+  if (is_beyond) shader.defines.emplace_back("BEYOND", "1");
+  for (const auto& [name, value] : shader.defines) shader.name += ", " + name;
+  return shader;
+}
+
+IntegratorShader polynomial_shader(int degree, OpacityModel opacity) {
+  const std::string number = std::to_string(degree);
+  IntegratorShader shader{"polynomial=" + number, "integrators/polynomial.glsl", {{"DEGREE", number}}};
+  if (opacity == OpacityModel::kExponential) return shader;
+  shader.name += ", linear";
+  shader.defines.emplace_back("LINEAR_OPACITY", "1");
   return shader;
 }
 
@@ -28,36 +39,46 @@ IntegratorShader antiderivative_shader(bool has_coarse, bool is_beyond) {
 
 void IntegratorShader::add_to(ShaderRecipe& recipe) const {
   recipe.includes.emplace_back("integrator.glsl", file);
-  for (const std::string& define : defines) recipe.defines.emplace_back(define, "1");
+  recipe.defines.insert(recipe.defines.end(), defines.begin(), defines.end());
 }
 
 std::vector<IntegratorShader> all_integrator_shaders() {
-  std::vector<IntegratorShader> shaders{kCell, kPartial, kPost};
+  std::vector<IntegratorShader> shaders{kCell, kPartial, kPost, kTable3d, kCylindrical};
   for (const bool has_coarse : {false, true})
     for (const bool is_beyond : {false, true}) shaders.push_back(antiderivative_shader(has_coarse, is_beyond));
+  for (int degree = 0; degree <= kLargestDegree; ++degree)
+    for (const OpacityModel opacity : {OpacityModel::kExponential, OpacityModel::kLinear})
+      shaders.push_back(polynomial_shader(degree, opacity));
   return shaders;
 }
 
-IntegratorShader IntegratorTables::shader(Integrator integrator) const {
-  if (is_constant_) return kCell;
-  switch (integrator) {
+IntegratorShader IntegratorTables::shader(const RenderSettings& settings) const {
+  if (sources_.is_constant) return kCell;
+  switch (settings.integrator) {
     case Integrator::kAntiderivative:
       return antiderivative_shader(antiderivative_.has_coarse, !antiderivative_.covers_data);
     case Integrator::kPartial:
       return kPartial;
     case Integrator::kPost:
       return kPost;
-    default:
+    case Integrator::kTable3d:
+      return kTable3d;
+    case Integrator::kPolynomial:
+      return polynomial_shader(settings.preintegration.degree, settings.preintegration.opacity);
+    case Integrator::kCylindrical:
+      return kCylindrical;
+    case Integrator::kPre:
       break;
   }
-  throw Error(ErrorCode::kUnsupported, "the OpenGL backend does not know the integrator '" + name_of(integrator) +
-                                           "' yet: choose antiderivative, partial or post, or draw with --backend cpu");
+  throw Error(ErrorCode::kUnsupported, "the integrator 'pre' is for grids: choose another (tetravox list methods)");
 }
 
 void IntegratorTables::set_transfer_function(const OpticalFunction& function, const TableSources& sources) {
   control_points_ = optics::build_control_point_table(function, sources.map);
-  is_constant_ = sources.is_constant;
-  if (!is_constant_)
+  function_ = function;
+  sources_ = sources;
+  preintegration_.invalidate();
+  if (!sources_.is_constant)
     optics::build_antiderivative_table(function, sources.map, sources.range, sources.longest, antiderivative_);
   has_antiderivatives_ = has_control_points_ = false;
 }
@@ -89,11 +110,11 @@ void IntegratorTables::upload_control_points() {
   has_control_points_ = true;
 }
 
-void IntegratorTables::bind(const RenderSettings& settings, float tolerance) {
+void IntegratorTables::bind(const RenderSettings& settings, float tolerance, const Limits& limits) {
   if (!has_control_points_) upload_control_points();
   points_.bind(kControlPointUnit);
   intervals_.bind(kFirstIntervalUnit);
-  const Integrator integrator = is_constant_ ? Integrator::kPost : settings.integrator;
+  const Integrator integrator = sources_.is_constant ? Integrator::kPost : settings.integrator;
   if (integrator == Integrator::kAntiderivative) {
     if (!has_antiderivatives_) upload_antiderivatives();
     nodes_.bind(kTableUnit);
@@ -109,6 +130,11 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance) {
       has_absorbed_ = true;
     }
     absorbed_.bind_texture(kTableUnit);
+  }
+  if (scene::is_of_tables(integrator)) {
+    const double longest = sources_.longest_segment > 0.0 ? sources_.longest_segment : sources_.longest;
+    preintegration_.prepare({function_, sources_.map, sources_.range, longest}, settings);
+    ray_integrals_.bind(preintegration_, limits);
   }
   const optics::AntiderivativeTable& table = antiderivative_;
   const auto row = [](const std::array<float, 4>& v) { return vec4{v[0], v[1], v[2], v[3]}; };
@@ -134,8 +160,9 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance) {
 }
 
 std::uint64_t IntegratorTables::bytes() const {
-  return antiderivative_.bytes() + control_points_.bytes() + nodes_.bytes() + marks_.bytes() + variation_.bytes() +
-         points_.bytes() + intervals_.bytes() + (has_absorbed_ ? absorbed_.bytes() : 0) + block_.bytes();
+  return antiderivative_.bytes() + preintegration_.bytes() + ray_integrals_.bytes() + control_points_.bytes() +
+         nodes_.bytes() + marks_.bytes() + variation_.bytes() + points_.bytes() + intervals_.bytes() +
+         (has_absorbed_ ? absorbed_.bytes() : 0) + block_.bytes();
 }
 
 }  // namespace tetravox::gl

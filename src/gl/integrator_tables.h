@@ -3,6 +3,8 @@
 /// What integrators look up, on the device: made by src/optics, put into textures here.
 
 #include "src/gl/blocks.h"
+#include "src/gl/context.h"
+#include "src/gl/preintegration_textures.h"
 #include "src/gl/resources.h"
 #include "src/gl/shader_source.h"
 #include "src/optics/antiderivative_table.h"
@@ -10,6 +12,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tetravox::gl {
@@ -19,16 +22,17 @@ namespace tetravox::gl {
 /// The data that a function is for.
 struct TableSources {
   optics::ScalarMap map;
-  ValueRange range;          ///< of the values
-  double longest = 1.0;      ///< world length of the longest ray
-  bool is_constant = false;  ///< cell data: control points alone
+  ValueRange range;              ///< of the values
+  double longest = 1.0;          ///< world length of the longest ray
+  double longest_segment = 0.0;  ///< the same of a segment; 0: that of the ray
+  bool is_constant = false;      ///< cell data: control points alone
 };
 
 /// What `#include "integrator.glsl"` stands for in the shaders of a source.
 struct IntegratorShader {
   std::string name;  ///< of its own for each variant
   std::string file;
-  std::vector<std::string> defines;
+  std::vector<std::pair<std::string, std::string>> defines;
 
   /// Makes the shader one that integrates so.
   void add_to(ShaderRecipe& recipe) const;
@@ -43,9 +47,9 @@ class IntegratorTables {
   void set_transfer_function(const OpticalFunction& function, const TableSources& sources);
   /// Puts on the device what the integrator of these settings needs and is not there yet, and binds it. `tolerance`: of
   /// a segment.
-  void bind(const RenderSettings& settings, float tolerance);
+  void bind(const RenderSettings& settings, float tolerance, const Limits& limits);
   /// @throws Error (kUnsupported) for an integrator that this backend does not know.
-  IntegratorShader shader(Integrator integrator) const;
+  IntegratorShader shader(const RenderSettings& settings) const;
   const optics::ControlPointTable& control_points() const { return control_points_; }
   std::uint64_t bytes() const;
 
@@ -53,11 +57,14 @@ class IntegratorTables {
   void upload_antiderivatives();
   void upload_control_points();
 
-  bool is_constant_ = false;
+  OpticalFunction function_;
+  TableSources sources_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
   bool has_antiderivatives_ = false, has_control_points_ = false;  // on the device
   BufferTexture nodes_, variation_, marks_, points_, intervals_;
+  scene::PreintegrationCache preintegration_;
+  PreintegrationTextures ray_integrals_;
   Picture absorbed_;
   bool has_absorbed_ = false;
   Buffer block_;

@@ -3,7 +3,9 @@
 #include "src/gl/integrator_tables.h"
 #include "src/gl/mesh_buffers.h"
 #include "src/gl/walk_passes.h"
+#include "src/mesh/edges.h"
 #include "src/support/threads.h"
+#include "src/support/timer.h"
 #include "tetravox/error.h"
 
 #include <memory>
@@ -32,9 +34,11 @@ class MeshRenderer final : public scene::FrameRenderer {
 
   void set_transfer_function(const OpticalFunction& function) override {
     const auto current = context_->make_current();
+    if (longest_edge_ == 0.0) longest_edge_ = mesh::find_longest_edge(mesh_);
     device_->tables.set_transfer_function(function, {{mesh_.scalar_offset, mesh_.scalar_scale},
                                                      mesh_.scalar_range,
                                                      diagonal(),
+                                                     longest_edge_,
                                                      mesh_.association == Association::kCell});
     has_domain_ = false;
   }
@@ -53,12 +57,14 @@ class MeshRenderer final : public scene::FrameRenderer {
     const scene::CameraFrame frame = device.mesh.see(camera, settings.width, settings.height);
     device.frame.begin(context_->limits(), frame, mesh_.world_per_local, settings);
     device.mesh.bind();
-    device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance);
+    const support::Timer timer;
+    device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, context_->limits());
+    statistics.plan_seconds = timer.seconds();
     const bool has_cell_data = mesh_.association == Association::kCell;
     device.walk.draw({device.mesh.describe(),
                       device.frame,
                       settings,
-                      device.tables.shader(settings.integrator),
+                      device.tables.shader(settings),
                       {has_cell_data, device.mesh.is_behind_eye(frame), settings.entry_order},
                       context_->limits(),
                       context.progress},
@@ -69,7 +75,9 @@ class MeshRenderer final : public scene::FrameRenderer {
   }
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
-    return static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height) * 4 * sizeof(float);
+    return static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height) * 4 *
+               sizeof(float) +
+           2 * scene::preintegration_bytes(settings);
   }
   std::uint64_t bytes() const override {
     return device_->mesh.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->walk.bytes();
@@ -90,6 +98,7 @@ class MeshRenderer final : public scene::FrameRenderer {
   const PreparedMesh& mesh_;
   std::shared_ptr<Context> context_;
   std::optional<Device> device_;
+  double longest_edge_ = 0.0;  // world length; 0: not known yet
   bool has_domain_ = false;
 };
 

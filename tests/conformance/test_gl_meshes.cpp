@@ -43,6 +43,37 @@ TEST_P(GlMeshes, PicturesAreThoseOfTheCpu) {
     }
 }
 
+/// One formula, two languages: `eval_*` of src/optics, the kernels and the shaders.
+TEST_P(GlMeshes, TablesAreLookedUpAsOnTheCpu) {
+  TETRAVOX_REQUIRE_GL();
+  // Devices may interpolate between texels in steps of 1/256; llvmpipe does not.
+  const bool is_exact = gl_devices().front().is_software;
+  const Subject scene = make_any_subject(GetParam());
+  Renderer gl = make_gl_renderer(scene.mesh), cpu(scene.mesh);
+  for (const auto& [camera_name, camera] : scene.cameras)
+    for (const auto& [function_name, function] : scene.functions) {
+      gl.set_transfer_function(function);
+      cpu.set_transfer_function(function);
+      for (const Integrator integrator : {Integrator::kTable3d, Integrator::kPolynomial, Integrator::kCylindrical})
+        for (const bool is_other : {false, true}) {
+          RenderSettings settings = tests::make_settings(integrator, 77, 53);
+          settings.use_early_ray_termination = false;
+          PreintegrationSettings& tables = settings.preintegration;
+          tables.scalars = is_other ? 32 : 24;
+          tables.lengths = 16;
+          tables.length_spacing = is_other ? LengthSpacing::kUniform : LengthSpacing::kLogarithmic;
+          tables.degree = is_other ? 1 : 3;
+          tables.opacity = is_other ? OpacityModel::kLinear : OpacityModel::kExponential;
+          tables.planes = is_other ? 8 : 9;
+          tables.tile = 16;
+          tables.steps = 8;
+          EXPECT_TRUE(tests::images_agree(gl.render(camera, settings), cpu.render(camera, settings),
+                                          is_exact ? 1e-4 : 1e-2, is_exact ? 5e-6 : 1e-3))
+              << camera_name << " " << function_name << " " << format_integrator(settings) << " " << is_other;
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Data, GlMeshes,
                          ::testing::Values("sphere", "buckyball?cells=20000", "duct?cells=4000", "cell_data"),
                          [](const auto& test) { return test.param.substr(0, test.param.find('?')); });

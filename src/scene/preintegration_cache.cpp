@@ -1,6 +1,6 @@
-#include "src/cpu/preintegration_cache.h"
+#include "src/scene/preintegration_cache.h"
 
-namespace tetravox::cpu {
+namespace tetravox::scene {
 namespace {
 
 /// What the integrator asks for, everything else as by default.
@@ -55,12 +55,7 @@ void PreintegrationCache::prepare(const optics::PreintegrationSource& source, co
   settings_ = asked;
   longest_ = source.longest;
   integrator_ = settings.integrator;
+  ++number_;
 }
 
-void PreintegrationCache::attach(IntegratorTables& tables) const {
-  if (integrator_ == Integrator::kTable3d) tables.preintegration = &table_;
-  if (integrator_ == Integrator::kPolynomial) tables.polynomial = &polynomial_;
-  if (integrator_ == Integrator::kCylindrical) tables.atlas = &atlas_;
-}
-
-}  // namespace tetravox::cpu
+}  // namespace tetravox::scene

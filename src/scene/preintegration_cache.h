@@ -2,7 +2,6 @@
 
 /// The table of ray integrals that a renderer draws with, from frame to frame as long as nothing changes.
 
-#include "src/cpu/kernels/kernels.h"
 #include "src/optics/cylindrical_atlas.h"
 #include "src/optics/polynomial_table.h"
 #include "src/optics/preintegration_table.h"
@@ -10,7 +9,7 @@
 
 #include <cstdint>
 
-namespace tetravox::cpu {
+namespace tetravox::scene {
 
 /// Whether the integrator looks whole ray integrals up.
 bool is_of_tables(Integrator integrator);
@@ -28,12 +27,22 @@ class PreintegrationCache {
   /// @throws Error: kOutOfMemory.
   void prepare(const optics::PreintegrationSource& source, const RenderSettings& settings);
 
-  /// Hands it to a frame. Valid as long as this.
-  void attach(IntegratorTables& tables) const;
+  // The table at hand, null where it is another.
+  const optics::PreintegrationTable* table() const { return of(Integrator::kTable3d, table_); }
+  const optics::PolynomialTable* polynomial() const { return of(Integrator::kPolynomial, polynomial_); }
+  const optics::CylindricalAtlas* atlas() const { return of(Integrator::kCylindrical, atlas_); }
+  /// Changes with the table at hand.
+  std::uint64_t number() const { return number_; }
 
   std::uint64_t bytes() const { return table_.bytes() + polynomial_.bytes() + atlas_.bytes(); }
 
  private:
+  template <class Table>
+  const Table* of(Integrator integrator, const Table& table) const {
+    return integrator_ == integrator ? &table : nullptr;
+  }
+
+  std::uint64_t number_ = 0;
   Integrator integrator_ = Integrator::kAntiderivative;  // that the table at hand is for; this one: none
   PreintegrationSettings settings_;
   double longest_ = 0.0;
@@ -42,4 +51,4 @@ class PreintegrationCache {
   optics::CylindricalAtlas atlas_;
 };
 
-}  // namespace tetravox::cpu
+}  // namespace tetravox::scene
