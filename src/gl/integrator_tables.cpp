@@ -87,11 +87,10 @@ void IntegratorTables::upload_antiderivatives() {
   const auto nodes = static_cast<std::size_t>(antiderivative_.last_node) + 1;
   nodes_.upload(GL_RGBA32I, antiderivative_.entries.data(), nodes * sizeof(optics::AntiderivativeTable::Node));
   variation_.upload(GL_R32F, antiderivative_.color_variation.data(), nodes * sizeof(float));
-  std::vector<std::array<std::int32_t, 2>> marks(nodes + 1);
+  std::vector<std::int32_t> marks(nodes);
   for (std::size_t node = 0; node < nodes; ++node)
-    marks[node] = {antiderivative_.is_coarse[node], antiderivative_.coarse_before[node]};
-  marks[nodes][1] = antiderivative_.coarse_before[nodes];
-  marks_.upload(GL_RG32I, marks.data(), marks.size() * sizeof(marks[0]));
+    marks[node] = 2 * antiderivative_.coarse_before[node] + antiderivative_.is_coarse[node];
+  marks_.upload(GL_R32I, marks.data(), marks.size() * sizeof(marks[0]));
   has_antiderivatives_ = true;
 }
 

@@ -15,7 +15,8 @@
 layout(binding = 4) uniform isamplerBuffer antiderivatives;
 layout(binding = 5) uniform samplerBuffer color_variation;  // [nodes] up to the node
 #ifdef HAS_COARSE
-layout(binding = 11) uniform isamplerBuffer node_marks;  // [nodes + 1]: whether the interval behind is coarse, how many before are
+// [nodes]: twice how many intervals before are too coarse, and one more where that behind is.
+layout(binding = 11) uniform isamplerBuffer node_marks;
 #endif
 
 // The function where a ray is, and what is left of its segment.
@@ -29,8 +30,9 @@ struct Front {
   float share;   // of what is left, for the next piece
   bool is_pending;
 #ifdef HAS_COARSE
-  Course course;     // the same segment from control point to control point,
-  bool is_exact;     // where it is taken so
+  int mark;       // of its node
+  Course course;  // the same segment from control point to control point,
+  bool is_exact;  // where it is taken so
 #endif
 };
 
@@ -52,6 +54,9 @@ void place(float at, inout Front front) {
   front.sums = sums + ivec4(roundEven(f * tables.units_per_density * mean));
   front.densities = low + f * slope;
   front.variation = variation_at(at);
+#ifdef HAS_COARSE
+  front.mark = texelFetch(node_marks, node_at(at)).x;
+#endif
 }
 
 Front front_at(float scalar) {
@@ -93,10 +98,9 @@ vec4 integrate_between(Front a, Front b, float len) {
 }
 
 #ifdef HAS_COARSE
-bool is_coarse(float at) { return texelFetch(node_marks, node_at(at)).x != 0; }
-bool passes_coarse(float a, float b) {
-  return texelFetch(node_marks, node_at(min(a, b))).y != texelFetch(node_marks, node_at(max(a, b)) + 1).y;
-}
+bool is_coarse(int mark) { return (mark & 1) != 0; }
+// Whether an interval from the node of one mark to that behind the node of the other is too coarse.
+bool passes_coarse(int a, int b) { return (min(a, b) >> 1) != ((max(a, b) + 1) >> 1); }
 #endif
 
 void begin(Segment segment, inout Front front) {
@@ -105,7 +109,7 @@ void begin(Segment segment, inout Front front) {
   front.share = 1.0;
   front.is_pending = true;
 #ifdef HAS_COARSE
-  front.is_exact = segment.world_length > 0.0 && (is_coarse(front.position) || is_coarse(front.position_back));
+  front.is_exact = segment.world_length > 0.0 && is_coarse(front.mark);
   front.course = begin_course(segment);
 #endif
 }
@@ -152,7 +156,7 @@ void advance(inout Front front, inout vec4 sum) {
   if (front.is_exact) {
     integrals = vec4(0.0);  // they have been composited
     is_fine = true;
-  } else if (!is_fine && passes_coarse(front.position, front.position_back)) {
+  } else if (len > 0.0 && (is_coarse(next.mark) || (!is_fine && passes_coarse(front.mark, next.mark)))) {
     front.is_exact = true;  // only at first: what follows a piece that passed never is
     return;
   }
@@ -166,6 +170,9 @@ void advance(inout Front front, inout vec4 sum) {
   front.sums = next.sums;
   front.densities = next.densities;
   front.variation = next.variation;
+#ifdef HAS_COARSE
+  front.mark = next.mark;
+#endif
   front.left -= len;
   // Of what is left, twice as long as this piece was.
   front.share = min(2.0 * front.share / max(1.0 - front.share, 1e-3), 1.0);
