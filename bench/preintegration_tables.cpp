@@ -163,7 +163,14 @@ void draw_segment(std::mt19937& random, double place[3]) {
   place[2] = unit(random) * kLongest;
 }
 
-/// Of table3d, as times, and by the paper's sizes.
+/// As in meshes: scalars that do not differ much, and half of the lengths below an eighth of the longest.
+void draw_short_segment(std::mt19937& random, double place[3]) {
+  draw_segment(random, place);
+  place[1] = std::clamp(place[0] + 0.5 * (place[1] - 0.5), 0.0, 1.0);
+  place[2] *= place[2] * place[2];
+}
+
+/// Of table3d, at the paper's sizes.
 void time_full_tables(int rounds, Report& report) {
   report.begin("full_table_seconds",
                "Seconds of a full table, 64 steps an entry (Roettger and Ertl 2002, table 2: software)",
@@ -265,17 +272,32 @@ void time_polynomials(int rounds, Report& report) {
   report.add({"antiderivatives", seconds, "-"});
 }
 
+/// How lengths should be spaced, by how deep the longest segment is.
+void measure_spacings(bool is_quick, Report& report) {
+  report.begin("spacing_errors", "Errors by the spacing of lengths, viridis:ramp, 256 x 256 x 64",
+               {"depth of the longest", "spacing", "RMS", "maximum"});
+  for (const double depth : {1.0, 10.0, 100.0, 1000.0, 10000.0}) {
+    const NamedFunction named = make_functions(depth)[0];
+    const Samples samples(named.function, is_quick ? 2000 : 20000, draw_short_segment);
+    for (const LengthSpacing spacing : {LengthSpacing::kUniform, LengthSpacing::kLogarithmic}) {
+      PreintegrationSettings settings;
+      settings.scalars = 256;
+      settings.length_spacing = spacing;
+      PreintegrationTable table;
+      build_preintegration_table(source_of(named.function), settings, table);
+      const Errors errors =
+          samples.measure([&](float a, float b, float l) { return eval_preintegration_table(table, a, b, l); });
+      report.add({depth, name_of(spacing), errors.rms, errors.largest});
+    }
+  }
+}
+
 /// The three methods at sizes of about the same memory.
 void measure_methods(bool is_quick, Report& report) {
   report.begin("method_errors", "Errors and memory of the methods (depth of the longest segment: 10)",
                {"function", "method", "size", "MB", "RMS", "maximum"});
   for (const NamedFunction& named : make_functions(10.0)) {
-    // Short ones count as in meshes: half of them are below an eighth.
-    const Samples samples(named.function, is_quick ? 2000 : 20000, [](std::mt19937& random, double place[3]) {
-      draw_segment(random, place);
-      place[1] = std::clamp(place[0] + 0.5 * (place[1] - 0.5), 0.0, 1.0);
-      place[2] *= place[2] * place[2];
-    });
+    const Samples samples(named.function, is_quick ? 2000 : 20000, draw_short_segment);
     const PreintegrationSource source = source_of(named.function);
     const auto add = [&](const std::string& method, const std::string& size, std::uint64_t bytes,
                          const Errors& errors) {
@@ -337,6 +359,7 @@ int main(int argc, char** argv) {
   measure_bits_and_steps(is_quick, report);
   measure_polynomials(is_quick, report);
   time_polynomials(rounds, report);
+  measure_spacings(is_quick, report);
   measure_methods(is_quick, report);
   if (json_file.empty()) return 0;
   std::ofstream out(json_file);

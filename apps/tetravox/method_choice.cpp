@@ -18,8 +18,9 @@ struct ClassificationEntry {
 
 constexpr std::array<ClassificationEntry, 3> kClassifications{
     {{Classification::kPreintegrated, "preintegrated",
-      "the function is integrated along each segment: integrators antiderivative, partial, table3d, polynomial, "
-      "cylindrical (default)"},
+      "the function is integrated along each segment: integrators antiderivative (default), partial, table3d, "
+      "polynomial, "
+      "cylindrical"},
      {Classification::kPost, "post", "the function is looked up at samples: integrator post; for comparison"},
      {Classification::kPre, "pre",
       "grids: the function is looked up at the values, colours are interpolated: integrator pre; for comparison"}}};

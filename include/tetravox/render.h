@@ -139,7 +139,8 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// One pass over a 1D table, under a millisecond. What was set by the two functions below is dropped.
+  /// One pass over a 1D table, under a millisecond; tables of ray integrals (`RenderSettings::preintegration`) are made
+  /// in the next frame that looks them up. What was set by the two functions below is dropped.
   /// Extinctions beyond what is opaque within a millionth of the mesh's diagonal are taken as that.
   /// @throws Error (kInvalidArgument) for no points, values that descend or are not finite, negative extinctions.
   void set_transfer_function(const OpticalFunction& function);

@@ -185,7 +185,7 @@ class GridRenderer final : public scene::FrameRenderer {
   }
   const PreparedGrid& drawn() const { return field_.middles ? *field_.middles : grid_; }
   void prepare_filter(const RenderSettings& settings);
-  void prepare_preintegration(const RenderSettings& settings);
+  void prepare_preintegration(const RenderSettings& settings, const Progress& progress);
   void fill_lattices(const FrameParts& frame, std::uint32_t index, Workspace& workspace, MarchBrick& brick) const;
   GradientSource choose_gradients(const RenderSettings& settings) const;
   void describe(const RenderSettings& settings, const scene::FrameContext& context, FrameParts& frame);
@@ -317,11 +317,11 @@ void GridRenderer::prepare_filter(const RenderSettings& settings) {
 }
 
 /// Makes the table of ray integrals, where these are looked up. Constant cells need none.
-void GridRenderer::prepare_preintegration(const RenderSettings& settings) {
+void GridRenderer::prepare_preintegration(const RenderSettings& settings, const Progress& progress) {
   if (!scene::is_of_tables(settings.integrator) || domain_.is_set() || is_constant(settings)) return;
   const double longest = settings.samples_per_voxel > 0.0 ? mean_spacing(frame_) / settings.samples_per_voxel
                                                           : longest_cell_diagonal(frame_);
-  preintegration_.prepare({function_, scalar_map(), grid_.scalar_range, longest}, settings);
+  preintegration_.prepare({function_, scalar_map(), grid_.scalar_range, longest, progress}, settings);
 }
 
 PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
@@ -456,7 +456,7 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
   if (has_effects) require_effects(settings, is_constant(settings));
   const support::Timer timer;
   prepare_filter(settings);
-  prepare_preintegration(settings);
+  prepare_preintegration(settings, context.progress);
   const double table_seconds = timer.seconds();
   if (has_effects) prepare_shadows(camera, settings, context);
   const double shadow_seconds = timer.seconds() - table_seconds;

@@ -176,7 +176,7 @@ class MeshRenderer final : public scene::FrameRenderer {
   using WalkKernel = WalkStatistics (*)(const WalkJob&);
   WalkKernel choose_kernel(const Kernels& kernels, const RenderSettings& settings, bool has_effects) const;
   void prepare_effects(const RenderSettings& settings);
-  void prepare_preintegration(const RenderSettings& settings);
+  void prepare_preintegration(const RenderSettings& settings, const Progress& progress);
   void describe(const RenderSettings& settings, const scene::FrameContext& context, Frame& frame,
                 Illustration& illustration) const;
   void draw(const Pass& pass, const scene::FrameContext& context, Image& image, RenderStatistics& statistics);
@@ -254,11 +254,11 @@ void MeshRenderer::prepare_effects(const RenderSettings& settings) {
 }
 
 /// Makes the table of ray integrals, where these are looked up. With cell data segments need none.
-void MeshRenderer::prepare_preintegration(const RenderSettings& settings) {
+void MeshRenderer::prepare_preintegration(const RenderSettings& settings, const Progress& progress) {
   if (!scene::is_of_tables(settings.integrator) || domain_.is_set() || mesh_.association == Association::kCell) return;
   if (!longest_edge_) longest_edge_ = mesh::find_longest_edge(mesh_);
-  preintegration_.prepare({function_, {mesh_.scalar_offset, mesh_.scalar_scale}, mesh_.scalar_range, *longest_edge_},
-                          settings);
+  preintegration_.prepare(
+      {function_, {mesh_.scalar_offset, mesh_.scalar_scale}, mesh_.scalar_range, *longest_edge_, progress}, settings);
 }
 
 /// Fills the effects of a frame, and points it at the gradients.
@@ -295,7 +295,7 @@ void MeshRenderer::render(const Camera& camera, const RenderSettings& settings, 
   const bool has_effects = wants_effects(settings) || domain_.is_set();
   if (domain_.is_set()) require_domain_settings(domain_, settings);
   const support::Timer timer;
-  prepare_preintegration(settings);
+  prepare_preintegration(settings, context.progress);
   statistics.plan_seconds = timer.seconds();
   if (has_effects) {
     require_effects(settings, mesh_.association == Association::kCell);

@@ -109,7 +109,8 @@ void IntegratorTables::upload_control_points() {
   has_control_points_ = true;
 }
 
-void IntegratorTables::bind(const RenderSettings& settings, float tolerance, const Limits& limits) {
+void IntegratorTables::bind(const RenderSettings& settings, float tolerance, const Limits& limits,
+                            const Progress& progress) {
   if (!has_control_points_) upload_control_points();
   points_.bind(kControlPointUnit);
   intervals_.bind(kFirstIntervalUnit);
@@ -132,7 +133,7 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance, con
   }
   if (scene::is_of_tables(integrator)) {
     const double longest = sources_.longest_segment > 0.0 ? sources_.longest_segment : sources_.longest;
-    preintegration_.prepare({function_, sources_.map, sources_.range, longest}, settings);
+    preintegration_.prepare({function_, sources_.map, sources_.range, longest, progress}, settings);
     ray_integrals_.bind(preintegration_, limits);
   }
   const optics::AntiderivativeTable& table = antiderivative_;

@@ -47,7 +47,7 @@ class IntegratorTables {
   void set_transfer_function(const OpticalFunction& function, const TableSources& sources);
   /// Puts on the device what the integrator of these settings needs and is not there yet, and binds it. `tolerance`: of
   /// a segment.
-  void bind(const RenderSettings& settings, float tolerance, const Limits& limits);
+  void bind(const RenderSettings& settings, float tolerance, const Limits& limits, const Progress& progress);
   /// @throws Error (kUnsupported) for an integrator that this backend does not know.
   IntegratorShader shader(const RenderSettings& settings) const;
   const optics::ControlPointTable& control_points() const { return control_points_; }

@@ -58,7 +58,8 @@ class MeshRenderer final : public scene::FrameRenderer {
     device.frame.begin(context_->limits(), frame, mesh_.world_per_local, settings);
     device.mesh.bind();
     const support::Timer timer;
-    device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, context_->limits());
+    device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, context_->limits(),
+                       context.progress);
     statistics.plan_seconds = timer.seconds();
     const bool has_cell_data = mesh_.association == Association::kCell;
     device.walk.draw({device.mesh.describe(),

@@ -72,7 +72,7 @@ void build_cylindrical_atlas(const PreintegrationSource& source, const Preintegr
   if (bytes > atlas.bytes())
     support::require_memory(bytes - atlas.bytes(), "an atlas of " + std::to_string(planes) + " tiles of " +
                                                        std::to_string(tile) + " x " + std::to_string(tile));
-  const SegmentIntegral function(source.function, find_table_range(source.range));
+  const SegmentIntegral function(source.function, find_table_range(source));
   atlas.domain = make_segment_domain(source);
   atlas.planes = planes;
   atlas.tile = tile;
@@ -87,10 +87,13 @@ void build_cylindrical_atlas(const PreintegrationSource& source, const Preintegr
     for (int column = 0; column < tile; ++column, texel += 4) quotients.store(column, texel);
   };
   const std::size_t rows = static_cast<std::size_t>(planes) * static_cast<std::size_t>(tile);
+  TableProgress progress(&source.progress, rows);
   support::parallel_chunks(rows, 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = begin; i < end; ++i) {
+      progress.next();
       fill_row(static_cast<int>(i / static_cast<std::size_t>(tile)),
                static_cast<int>(i % static_cast<std::size_t>(tile)));
+    }
   });
 }
 

@@ -7,9 +7,10 @@
 /// the axis d = h = 0. When a tetrahedron is projected, each of its triangles spans a plane that holds a part of this
 /// axis, so that planes through the axis are all that is needed: one tile a plane.
 ///
-/// How we differ: planes are met linearly, not the nearest; where the paper has angle and radius, we have the place on
-/// a square around the axis and its size, which lose no texels and need no trigonometry; and the place along the axis
-/// goes from end to end of what can occur at a difference, so that no texel lies beyond the scalars that there are:
+/// How we differ: a look-up mixes the two planes beside it, since a ray has another one for each segment; where the
+/// paper has angle and radius, we have the place on a square around the axis and its size, which lose no texels and
+/// need no trigonometry; and the place along the axis goes from end to end of what can occur at a difference, so that
+/// no texel lies beyond the scalars that there are:
 ///   radius v = max(|d|, h)
 ///   turn   w = d / h where |d| <= h;  2 - h / d where d > h;  -2 + h / -d where -d > h;  0 on the axis. In [-2, 2]
 ///   along  u = min(s_front, s_back) / (1 - |d|)

@@ -111,23 +111,37 @@ void store_level_pair(const SegmentIntegral& function, const PairLattice& lattic
 
 }  // namespace
 
+void TableProgress::next() {
+  if (!progress_) return;
+  support::throw_if_cancelled(*progress_);
+  const std::size_t done = ++done_;
+  if (!progress_->report || busy_.test_and_set()) return;
+  progress_->report("integrate", static_cast<double>(done) / static_cast<double>(count_));
+  busy_.clear();
+}
+
 void integrate_pairs_anew(const SegmentIntegral& function, const PairLattice& lattice, const StorePair& store) {
   const double last = lattice.scalars - 1;
+  TableProgress progress(lattice.progress, static_cast<std::size_t>(lattice.scalars));
   support::parallel_chunks(static_cast<std::size_t>(lattice.scalars), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<Slab> found(lattice.lengths.size());
-    for (int back = static_cast<int>(begin); back < static_cast<int>(end); ++back)
+    for (int back = static_cast<int>(begin); back < static_cast<int>(end); ++back) {
+      progress.next();
       for (int front = 0; front < lattice.scalars; ++front) {
         for (std::size_t k = 0; k < found.size(); ++k)
           found[k] = function.integrate_in_steps(front / last, back / last, lattice.lengths[k], lattice.steps);
         store(front, back, found);
       }
+    }
   });
 }
 
 void integrate_pairs_incrementally(const SegmentIntegral& function, const PairLattice& lattice,
                                    const StorePair& store) {
+  TableProgress progress(lattice.progress, static_cast<std::size_t>(lattice.scalars));
   support::parallel_chunks(static_cast<std::size_t>(lattice.scalars), 1, [&](std::size_t begin, std::size_t end) {
     for (int difference = static_cast<int>(begin); difference < static_cast<int>(end); ++difference) {
+      progress.next();
       if (difference > 0)
         Diagonal(function, lattice, difference).store_all(store);
       else

@@ -3,7 +3,10 @@
 /// The integrals of all segments between scalars at equal distances, of some lengths: how tables are filled.
 
 #include "src/optics/segment_integral.h"
+#include "tetravox/progress.h"
 
+#include <atomic>
+#include <cstddef>
 #include <functional>
 #include <span>
 
@@ -13,6 +16,22 @@ struct PairLattice {
   int scalars = 2;                  ///< s = 0 ... 1
   std::span<const double> lengths;  ///< world lengths
   int steps = 64;                   ///< of each segment, at least
+  const Progress* progress = nullptr;
+};
+
+/// Says how much of a table is made, and stops where it is told to. Safe to call from many threads.
+class TableProgress {
+ public:
+  TableProgress(const Progress* progress, std::size_t count) : progress_(progress), count_(count) {}
+
+  /// A part is about to be made, and another one is done. @throws Error (kCancelled).
+  void next();
+
+ private:
+  const Progress* progress_;
+  std::size_t count_;
+  std::atomic<std::size_t> done_{0};
+  std::atomic_flag busy_;
 };
 
 /// Takes the integrals of the segments between two scalars: one for each length.

@@ -60,7 +60,7 @@ class ThinColors {
  public:
   ThinColors(const PreintegrationSource& source, const SegmentIntegral& function)
       : function_(function),
-        colors_(make_opaque_everywhere(source.function), find_table_range(source.range)),
+        colors_(make_opaque_everywhere(source.function), find_table_range(source)),
         least_(1e-9 / source.longest) {}
 
   std::array<double, 3> eval(double a, double b) const {
@@ -120,7 +120,7 @@ void build_polynomial_table(const PreintegrationSource& source, const Preintegra
     support::require_memory(bytes - table.bytes(), "tables of " + std::to_string(degree + 1) + " x " +
                                                        std::to_string(scalars) + " x " + std::to_string(scalars) +
                                                        " coefficients");
-  const SegmentIntegral function(source.function, find_table_range(source.range));
+  const SegmentIntegral function(source.function, find_table_range(source));
   const ThinColors thin(source, function);
   table.domain = make_segment_domain(source);
   table.scalars = scalars;
@@ -151,7 +151,7 @@ void build_polynomial_table(const PreintegrationSource& source, const Preintegra
       entry[3] = 0.0f;
     }
   };
-  integrate_pairs(function, {scalars, lengths, settings.steps}, settings.use_incremental, store);
+  integrate_pairs(function, {scalars, lengths, settings.steps, &source.progress}, settings.use_incremental, store);
   store_maps_in_bits(settings.bits, function.largest_extinction(), table);
 }
 

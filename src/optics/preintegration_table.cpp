@@ -21,7 +21,7 @@ void build_preintegration_table(const PreintegrationSource& source, const Preint
   if (bytes > table.bytes())
     support::require_memory(bytes - table.bytes(), "a pre-integration table of " + std::to_string(scalars) + " x " +
                                                        std::to_string(scalars) + " x " + std::to_string(lengths));
-  const SegmentIntegral function(source.function, find_table_range(source.range));
+  const SegmentIntegral function(source.function, find_table_range(source));
   table.domain = make_segment_domain(source);
   table.scalars = scalars;
   table.lengths = lengths;
@@ -43,7 +43,7 @@ void build_preintegration_table(const PreintegrationSource& source, const Preint
     for (std::size_t k = 0; k < by_length.size(); ++k)
       store_quotient(by_length[k], bounds[k], settings.bits, entry + (k + 1) * layer);
   };
-  integrate_pairs(function, {scalars, world, settings.steps}, settings.use_incremental, store);
+  integrate_pairs(function, {scalars, world, settings.steps, &source.progress}, settings.use_incremental, store);
 }
 
 SegmentColor eval_preintegration_table(const PreintegrationTable& table, float scalar_front, float scalar_back,

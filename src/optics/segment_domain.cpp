@@ -7,14 +7,16 @@
 
 namespace tetravox::optics {
 
-ValueRange find_table_range(const ValueRange& range) {
+ValueRange find_table_range(const PreintegrationSource& source) {
+  const ValueRange& range = source.range;
   if (range.max > range.min) return range;
-  const double half = std::max(std::abs(range.min) * 1e-3, 1e-300);
+  const double width = source.function.points.back().value - source.function.points.front().value;
+  const double size = std::max(std::abs(range.min), width), half = size > 0.0 ? 1e-6 * size : 1.0;
   return {range.min - half, range.min + half};
 }
 
 SegmentDomain make_segment_domain(const PreintegrationSource& source) {
-  const ValueRange range = find_table_range(source.range);
+  const ValueRange range = find_table_range(source);
   SegmentDomain domain;
   domain.first = source.map.stored_from_value(range.min);
   const double width = (range.max - range.min) / source.map.scale;

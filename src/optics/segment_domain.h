@@ -12,6 +12,7 @@
 
 #include "src/optics/antiderivative_table.h"
 #include "tetravox/preintegration.h"
+#include "tetravox/progress.h"
 #include "tetravox/transfer_function.h"
 
 namespace tetravox::optics {
@@ -32,12 +33,13 @@ struct SegmentColor {
 struct PreintegrationSource {
   const OpticalFunction& function;
   ScalarMap map;
-  ValueRange range;      ///< of the data, values
-  double longest = 1.0;  ///< world length of the longest segment, > 0
+  ValueRange range;        ///< of the data, values
+  double longest = 1.0;    ///< world length of the longest segment, > 0
+  Progress progress = {};  ///< of making a table: @throws Error (kCancelled) where it is told to stop
 };
 
 /// The values that s = 0 and s = 1 stand for: the range, widened a little where it is a single value.
-ValueRange find_table_range(const ValueRange& range);
+ValueRange find_table_range(const PreintegrationSource& source);
 
 SegmentDomain make_segment_domain(const PreintegrationSource& source);
 

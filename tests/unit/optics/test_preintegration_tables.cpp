@@ -10,11 +10,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <random>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -223,6 +225,9 @@ TEST(PreintegrationTables, ASingleValueWillDo) {
     const float stored = kMap.stored_from_value(2.0);
     EXPECT_NEAR(look_up(stored, stored, 1.0f).opacity, -std::expm1(-0.7f), 1e-4f) << name;
   }
+  const OpticalFunction around_nothing{{{-1.0, 0.0, {1, 1, 1}}, {1.0, 1.4, {1, 1, 1}}}};
+  for (const auto& [name, look_up] : make_all({around_nothing, {}, {0.0, 0.0}, 4.0}, {}))
+    EXPECT_NEAR(look_up(0.0f, 0.0f, 1.0f).opacity, -std::expm1(-0.7f), 1e-4f) << name;
 }
 
 TEST(PreintegrationTables, ErrorsFallAsTablesGrow) {
@@ -237,6 +242,25 @@ TEST(PreintegrationTables, ErrorsFallAsTablesGrow) {
     EXPECT_LT(after.rms, 0.25 * before.rms) << coarse_ones[i].first;
     EXPECT_LT(after.largest, 0.5 * before.largest) << coarse_ones[i].first;
   }
+}
+
+TEST(PreintegrationTables, AreGivenUpWhenToldTo) {
+  const OpticalFunction function = smooth_function();
+  std::atomic<bool> cancelled{true};
+  PreintegrationSource source = source_of(function);
+  source.progress.cancelled = &cancelled;
+  for (const bool use_incremental : {false, true}) {
+    PreintegrationSettings settings;
+    settings.use_incremental = use_incremental;
+    EXPECT_THROW(make_all(source, settings), Error);
+  }
+  // Parts are told until nearly all is done.
+  cancelled = false;
+  double part = 0.0;
+  source.progress.report = [&](std::string_view, double done) { part = std::max(part, done); };
+  CylindricalAtlas atlas;
+  build_cylindrical_atlas(source, {}, atlas);
+  EXPECT_GT(part, 0.5);
 }
 
 TEST(PolynomialTable, HigherDegreesAreBetter) {
