@@ -68,6 +68,7 @@ void check_tables(const PreintegrationOptions& tables, Integrator integrator, st
   check(tables.tile.has_value(), "--preintegration-tile", {kCylindrical});
   check(tables.steps.has_value(), "--preintegration-steps", {kTable, kPolynomial, kCylindrical});
   check(tables.bits.has_value(), "--preintegration-bits", {kTable, kPolynomial, kCylindrical});
+  check(tables.device.has_value(), "--preintegration-device", {kTable, kPolynomial, kCylindrical});
   check(tables.use_incremental.has_value(), "--preintegration-incremental", {kTable, kPolynomial});
 }
 
@@ -81,6 +82,7 @@ void override_tables(const PreintegrationOptions& tables, PreintegrationSettings
   settings.tile = tables.tile.value_or(settings.tile);
   settings.steps = tables.steps.value_or(settings.steps);
   settings.bits = tables.bits.value_or(settings.bits);
+  settings.device = tables.device.value_or(settings.device);
   settings.use_incremental = tables.use_incremental.value_or(settings.use_incremental);
 }
 

@@ -76,6 +76,7 @@ struct PreintegrationOptions {
   std::optional<int> scalars, lengths, degree, planes, tile, steps, bits;
   std::optional<LengthSpacing> length_spacing;
   std::optional<OpacityModel> opacity;
+  std::optional<TableDevice> device;
   std::optional<bool> use_incremental;
 };
 

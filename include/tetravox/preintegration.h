@@ -23,6 +23,12 @@ enum class OpacityModel {
   kLinear        ///< min(1, x), for comparison
 };
 
+/// What makes a table.
+enum class TableDevice {
+  kCpu,  ///< exact means of every step, in double precision
+  kGpu   ///< the device that draws, by blended samples as in the papers (OpenGL)
+};
+
 /// Of which integrator each is the option stands in brackets.
 struct PreintegrationSettings {
   int scalars = 128;  ///< entries along each scalar, in [2, 512] (table3d); in [2, 2048] (polynomial)
@@ -30,10 +36,11 @@ struct PreintegrationSettings {
   LengthSpacing length_spacing = LengthSpacing::kLogarithmic;  ///< (table3d)
   int degree = 2;                                              ///< of the chromaticity, in [0, 4] (polynomial)
   OpacityModel opacity = OpacityModel::kExponential;           ///< (polynomial)
-  int planes = 65;              ///< through the axis of the cylinder, in [2, 1024] (cylindrical)
-  int tile = 64;                ///< texels along each side of a plane's tile, in [2, 512] (cylindrical)
-  int steps = 64;               ///< of integration for each entry, at least, in [1, 4096] (all)
-  int bits = 32;                ///< each number is stored in: 8, 12, 16 (fixed point, emulated) or 32 (float) (all)
+  int planes = 65;  ///< through the axis of the cylinder, in [2, 1024] (cylindrical)
+  int tile = 64;    ///< texels along each side of a plane's tile, in [2, 512] (cylindrical)
+  int steps = 64;   ///< of integration for each entry, at least, in [1, 4096] (all)
+  int bits = 32;    ///< each number is stored in: 8, 12, 16 (fixed point, emulated) or 32 (float) (all)
+  TableDevice device = TableDevice::kCpu;  ///< (all)
   bool use_incremental = true;  ///< each entry from its neighbours along a diagonal; else each anew (table3d,
                                 ///< polynomial; Lum, Wilson, Ma 2004)
 
@@ -53,8 +60,10 @@ void validate_preintegration(const PreintegrationSettings& settings);
 /// "linear"), and back.
 std::string name_of(LengthSpacing spacing);
 std::string name_of(OpacityModel opacity);
+std::string name_of(TableDevice device);  ///< "cpu", "gpu"
 /// @throws Error (kInvalidArgument) that lists the names there are.
 LengthSpacing length_spacing_from_name(const std::string& name);
 OpacityModel opacity_model_from_name(const std::string& name);
+TableDevice table_device_from_name(const std::string& name);
 
 }  // namespace tetravox

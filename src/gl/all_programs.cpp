@@ -1,5 +1,6 @@
 #include "src/gl/all_programs.h"
 
+#include "src/gl/table_maker.h"
 #include "src/gl/walk_passes.h"
 
 namespace tetravox::gl {
@@ -23,6 +24,7 @@ void add_walk(std::vector<ProgramRecipe>& programs) {
 std::vector<ProgramRecipe> all_programs() {
   std::vector<ProgramRecipe> programs;
   add_walk(programs);
+  for (const auto& [name, stages] : recipes_of_tables()) programs.push_back({"tables, " + name, stages});
   return programs;
 }
 

@@ -25,7 +25,10 @@ struct TablesBlock {
 struct PreintegrationBlock {
 #include "src/gl/shaders/integrators/preintegration_block.glsl"
 };
+struct MakerBlock {
+#include "src/gl/shaders/tables/maker_block.glsl"
+};
 static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 6 * 16 &&
-              sizeof(PreintegrationBlock) == 3 * 16);
+              sizeof(PreintegrationBlock) == 3 * 16 && sizeof(MakerBlock) == 4 * 16);
 
 }  // namespace tetravox::gl

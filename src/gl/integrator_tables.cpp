@@ -78,6 +78,7 @@ void IntegratorTables::set_transfer_function(const OpticalFunction& function, co
   function_ = function;
   sources_ = sources;
   preintegration_.invalidate();
+  ray_integrals_.invalidate();
   if (!sources_.is_constant)
     optics::build_antiderivative_table(function, sources.map, sources.range, sources.longest, antiderivative_);
   has_antiderivatives_ = has_control_points_ = false;
@@ -133,8 +134,13 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance, con
   }
   if (scene::is_of_tables(integrator)) {
     const double longest = sources_.longest_segment > 0.0 ? sources_.longest_segment : sources_.longest;
-    preintegration_.prepare({function_, sources_.map, sources_.range, longest, progress}, settings);
-    ray_integrals_.bind(preintegration_, limits);
+    const optics::PreintegrationSource source{function_, sources_.map, sources_.range, longest, progress};
+    if (settings.preintegration.device == TableDevice::kGpu) {
+      ray_integrals_.make(source, settings, limits);
+    } else {
+      preintegration_.prepare(source, settings);
+      ray_integrals_.bind(preintegration_, limits);
+    }
   }
   const optics::AntiderivativeTable& table = antiderivative_;
   const auto row = [](const std::array<float, 4>& v) { return vec4{v[0], v[1], v[2], v[3]}; };

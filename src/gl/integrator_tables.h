@@ -17,7 +17,8 @@
 
 namespace tetravox::gl {
 
-// Texture units: 0 and 1 belong to the rays, 2 to 5 and 11 to 15 to integrators, 6 to 10 to sources.
+// Texture units: 0 and 1 belong to the rays, 2 to 5 and 11 to integrators, 6 to 10 to sources, 12 to 15 to passes that
+// make tables.
 
 /// The data that a function is for.
 struct TableSources {

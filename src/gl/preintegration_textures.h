@@ -4,9 +4,11 @@
 
 #include "src/gl/context.h"
 #include "src/gl/resources.h"
+#include "src/gl/table_maker.h"
 #include "src/scene/preintegration_cache.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace tetravox::gl {
 
@@ -16,16 +18,29 @@ class PreintegrationTextures {
   /// Puts the cache's table there where it is not yet, and binds it. @throws Error (kUnsupported) where the device
   /// cannot hold it.
   void bind(const scene::PreintegrationCache& cache, const Limits& limits);
-  std::uint64_t bytes() const { return bytes_ + block_.bytes(); }
+  /// Makes the table on the device, where it is not at hand, and binds it.
+  void make(const optics::PreintegrationSource& source, const RenderSettings& settings, const Limits& limits);
+  /// The function has changed.
+  void invalidate() { made_for_.reset(); }
+  std::uint64_t bytes() const { return table_.bytes + block_.bytes() + maker_.bytes(); }
 
  private:
   void upload(const optics::PreintegrationTable& table, const Limits& limits);
   void upload(const optics::PolynomialTable& table, const Limits& limits);
   void upload(const optics::CylindricalAtlas& atlas, const Limits& limits);
+  void bind();
 
-  std::uint64_t number_ = 0;  // of the table that is there
-  std::uint64_t bytes_ = 0;
-  TextureName table_, ratios_;
+  /// What a table of the device was made for.
+  struct Made {
+    Integrator integrator;
+    PreintegrationSettings settings;
+    double longest = 0.0;
+    bool operator==(const Made&) const = default;
+  };
+  std::uint64_t number_ = 0;      // of the cache's table that is there; 0: another
+  std::optional<Made> made_for_;  // where the device has made it
+  DeviceTable table_;
+  TableMaker maker_;
   Buffer block_;
 };
 

@@ -11,8 +11,6 @@
 namespace tetravox::optics {
 namespace {
 
-int count_columns(int planes) { return static_cast<int>(std::ceil(std::sqrt(static_cast<double>(planes)))); }
-
 /// Difference of scalars and share of the length on a plane, for a radius of 1.
 struct PlaneDirection {
   double difference = 0.0, share = 0.0;
@@ -59,8 +57,10 @@ class AtlasRow {
 
 }  // namespace
 
+int count_atlas_columns(int planes) { return static_cast<int>(std::ceil(std::sqrt(static_cast<double>(planes)))); }
+
 std::uint64_t cylindrical_atlas_bytes(int planes, int tile) {
-  const auto columns = static_cast<std::uint64_t>(count_columns(planes));
+  const auto columns = static_cast<std::uint64_t>(count_atlas_columns(planes));
   const std::uint64_t rows = (static_cast<std::uint64_t>(planes) + columns - 1) / columns;
   return columns * rows * static_cast<std::uint64_t>(tile) * static_cast<std::uint64_t>(tile) * 4 * sizeof(float);
 }
@@ -76,7 +76,7 @@ void build_cylindrical_atlas(const PreintegrationSource& source, const Preintegr
   atlas.domain = make_segment_domain(source);
   atlas.planes = planes;
   atlas.tile = tile;
-  atlas.columns = count_columns(planes);
+  atlas.columns = count_atlas_columns(planes);
   atlas.rows = (planes + atlas.columns - 1) / atlas.columns;
   atlas.texels.assign(bytes / sizeof(float), 0.0f);
 

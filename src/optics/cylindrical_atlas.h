@@ -37,6 +37,9 @@ struct CylindricalAtlas {
   std::uint64_t bytes() const { return texels.size() * sizeof(float); }
 };
 
+/// Columns of tiles: an atlas is about as wide as high.
+int count_atlas_columns(int planes);
+
 /// Bytes of an atlas of that size.
 std::uint64_t cylindrical_atlas_bytes(int planes, int tile);
 

@@ -94,6 +94,14 @@ void store_maps_in_bits(int bits, double largest_extinction, PolynomialTable& ta
   }
 }
 
+}  // namespace
+
+PolynomialFit make_polynomial_fit(int degree) {
+  std::vector<double> places = make_fit_places(degree);
+  std::vector<std::vector<double>> weights = make_fit_weights(degree, places);
+  return {std::move(places), std::move(weights)};
+}
+
 std::vector<float> make_absorbed_ratios(int bits) {
   std::vector<float> ratios;
   for (int i = 0; i < PolynomialTable::kDepths; ++i) {
@@ -102,8 +110,6 @@ std::vector<float> make_absorbed_ratios(int bits) {
   }
   return ratios;
 }
-
-}  // namespace
 
 std::uint64_t polynomial_table_bytes(int scalars, int degree) {
   return (static_cast<std::uint64_t>(degree + 1) * static_cast<std::uint64_t>(scalars) *
@@ -129,8 +135,7 @@ void build_polynomial_table(const PreintegrationSource& source, const Preintegra
   table.absorbed_ratios = make_absorbed_ratios(settings.bits);
   table.maps.resize(bytes / sizeof(float) - PolynomialTable::kDepths);
 
-  const std::vector<double> places = make_fit_places(degree);
-  const std::vector<std::vector<double>> weights = make_fit_weights(degree, places);
+  const auto [places, weights] = make_polynomial_fit(degree);
   std::vector<double> lengths;
   for (const double place : places) lengths.push_back(place * source.longest);
   const std::size_t size = 4 * static_cast<std::size_t>(scalars) * static_cast<std::size_t>(scalars);

@@ -41,6 +41,17 @@ std::uint64_t polynomial_table_bytes(int scalars, int degree);
 void build_polynomial_table(const PreintegrationSource& source, const PreintegrationSettings& settings,
                             PolynomialTable& table);
 
+/// How the coefficients above 0 come from chromaticities: at lengths whose parts of the longest are `places`, denser
+/// where short, by least squares; the polynomial's value at length 0 is exact.
+struct PolynomialFit {
+  std::vector<double> places;                ///< [2 degree + 1], none for degree 0
+  std::vector<std::vector<double>> weights;  ///< [degree][places]: row i for the coefficient of t^(i + 1)
+};
+PolynomialFit make_polynomial_fit(int degree);
+
+/// See `PolynomialTable::absorbed_ratios`; `bits`: of the table's numbers.
+std::vector<float> make_absorbed_ratios(int bits);
+
 /// The look-up of `polynomial`: with x = mean extinction * min(length, longest), the opacity is x * ratio(x) (linear:
 /// min(1, x)), and each channel is clamp(polynomial(t), 0, 1) * opacity, by Horner's rule from coefficients that are
 /// interpolated first. Stored scalars, world length.

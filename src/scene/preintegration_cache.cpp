@@ -1,5 +1,7 @@
 #include "src/scene/preintegration_cache.h"
 
+#include "tetravox/error.h"
+
 namespace tetravox::scene {
 namespace {
 
@@ -44,6 +46,9 @@ std::uint64_t preintegration_bytes(const RenderSettings& settings) {
 
 void PreintegrationCache::prepare(const optics::PreintegrationSource& source, const RenderSettings& settings) {
   const PreintegrationSettings asked = relevant(settings.preintegration, settings.integrator);
+  if (settings.preintegration.device == TableDevice::kGpu)
+    throw Error(ErrorCode::kUnsupported,
+                "tables are made on the GPU by the OpenGL backend only: draw with --backend gl");
   if (integrator_ == settings.integrator && settings_ == asked && longest_ == source.longest) return;
   invalidate();
   if (settings.integrator != Integrator::kTable3d) table_ = {};

@@ -48,6 +48,10 @@ constexpr std::array<Name<OpacityModel>, 2> kOpacityModels{
     {{OpacityModel::kExponential, "exponential", "1 - exp(-x) of the optical depth x"},
      {OpacityModel::kLinear, "linear", "min(1, x), for comparison"}}};
 
+constexpr std::array<Name<TableDevice>, 2> kTableDevices{
+    {{TableDevice::kCpu, "cpu", "exact means of every step, in double precision"},
+     {TableDevice::kGpu, "gpu", "the device that draws, by blended samples as in the papers"}}};
+
 constexpr std::array<Name<EntryOrder>, 2> kEntryOrders{
     {{EntryOrder::kLists, "lists", "a sorted list for each pixel (Yang, Hensley, Gruen, Thibieroz 2010)"},
      {EntryOrder::kPeeling, "peeling", "depth peeling of the boundary (Everitt 2001; Espinha and Celes 2005)"}}};
@@ -143,6 +147,10 @@ void parse_integrator(const std::string& text, RenderSettings& settings) {
 }
 
 std::string name_of(LengthSpacing spacing) { return name_of_enumerator(kLengthSpacings, spacing); }
+std::string name_of(TableDevice device) { return name_of_enumerator(kTableDevices, device); }
+TableDevice table_device_from_name(const std::string& name) {
+  return enumerator_from_name(kTableDevices, name, "maker of tables");
+}
 std::string name_of(OpacityModel opacity) { return name_of_enumerator(kOpacityModels, opacity); }
 LengthSpacing length_spacing_from_name(const std::string& name) {
   return enumerator_from_name(kLengthSpacings, name, "spacing of lengths");

@@ -96,7 +96,7 @@ void read_image(const JsonPlace& place, Scene& scene) {
 
 void read_preintegration(const JsonPlace& place, PreintegrationSettings& tables) {
   place.require_keys(
-      {"scalars", "lengths", "length_spacing", "opacity", "planes", "tile", "steps", "bits", "incremental"});
+      {"scalars", "lengths", "length_spacing", "opacity", "planes", "tile", "steps", "bits", "device", "incremental"});
   const auto read_integer = [&](const char* key, int& number) {
     if (const auto at = place.find(key)) number = static_cast<int>(at->integer(1, kLargestSampleCount));
   };
@@ -110,6 +110,8 @@ void read_preintegration(const JsonPlace& place, PreintegrationSettings& tables)
     tables.length_spacing = at_place(*spacing, [&] { return length_spacing_from_name(spacing->string()); });
   if (const auto opacity = place.find("opacity"))
     tables.opacity = at_place(*opacity, [&] { return opacity_model_from_name(opacity->string()); });
+  if (const auto device = place.find("device"))
+    tables.device = at_place(*device, [&] { return table_device_from_name(device->string()); });
   if (const auto use = place.find("incremental")) tables.use_incremental = use->boolean();
   at_place(place, [&] { validate_preintegration(tables); });
 }
@@ -213,6 +215,7 @@ Json write_preintegration(const PreintegrationSettings& tables) {
   if (tables.tile != usual.tile) json["tile"] = tables.tile;
   if (tables.steps != usual.steps) json["steps"] = tables.steps;
   if (tables.bits != usual.bits) json["bits"] = tables.bits;
+  if (tables.device != usual.device) json["device"] = name_of(tables.device);
   if (tables.use_incremental != usual.use_incremental) json["incremental"] = tables.use_incremental;
   return json;
 }
