@@ -3,8 +3,8 @@
 ///
 ///     visibility_orders [--pixels N] [--views N] INPUT...
 ///
-/// INPUT is a file or builtin:NAME. Cells a second are those of the median view, with all cores; violations are sums over
-/// the views, perspective and orthographic in turn, the last one from inside.
+/// INPUT is a file or builtin:NAME. Cells a second are those of the median view, with all cores; violations are sums
+/// over the views, perspective and orthographic in turn, the last one from inside.
 
 #include "tetravox/error.h"
 #include "tetravox/io.h"
@@ -41,8 +41,9 @@ std::vector<Camera> make_views(const PreparedMesh& mesh, int count) {
   for (int i = 0; i + 1 < count; ++i) {
     views.push_back(tetravox::rotate_camera(first, 360.0 * i / (count - 1), 17.0 * i - 40.0));
     if (i % 2 == 1) {
-      const double distance = std::hypot(first.position[0] - first.focal_point[0], first.position[1] - first.focal_point[1],
-                                         first.position[2] - first.focal_point[2]);
+      const double distance =
+          std::hypot(first.position[0] - first.focal_point[0], first.position[1] - first.focal_point[1],
+                     first.position[2] - first.focal_point[2]);
       views.back().parallel_scale = 0.27 * distance;
     }
   }
@@ -58,6 +59,7 @@ struct Row {
   std::vector<double> rates;
   OrderReport errors;
   std::uint64_t cycles = 0, cyclic_cells = 0, broken = 0, relations = 0;
+  double gap_ms = 0;
 };
 
 void add_view(const PreparedMesh& mesh, const Camera& camera, SortMethod method, int pixels, Row& row) {
@@ -80,6 +82,7 @@ void add_view(const PreparedMesh& mesh, const Camera& camera, SortMethod method,
   row.errors.wrong_segments += report.wrong_segments;
   row.errors.wrong_rays += report.wrong_rays;
   row.errors.intersections += report.intersections;
+  row.gap_ms += statistics.boundary_seconds * 1e3;
   row.cycles += statistics.cycles;
   row.cyclic_cells += statistics.cyclic_cells;
   row.broken += statistics.broken_relations;
@@ -122,7 +125,9 @@ Settings parse(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const Settings settings = parse(argc, argv);
-  std::printf("| mesh | method | cells/s | face violations | pixel violations | intersections | cycles (cells) | gap relations |\n");
+  std::printf(
+      "| mesh | method | cells/s | face violations | pixel violations | intersections | cycles (cells) | gap relations "
+      "|\n");
   std::printf("|---|---|---|---|---|---|---|---|\n");
   for (const std::string& input : settings.inputs) {
     try {

@@ -8,6 +8,7 @@
 #include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
 #include "tetravox/transfer_function.h"
+#include "tetravox/visibility.h"
 
 #include <cstddef>
 #include <iostream>
@@ -58,6 +59,9 @@ void run_list(const ListOptions& options) {
       break;
     case ListOptions::Topic::kEnvironments:
       std::cout << with_title("Embedded surroundings for --environment:", builtin_rows(builtin_environment_names()));
+      break;
+    case ListOptions::Topic::kSorts:
+      std::cout << with_title("Orders of cells (tetravox order --sort):", sort_method_names());
       break;
     case ListOptions::Topic::kMethods:
       std::cout << with_title("Sources (--source):", source_names())

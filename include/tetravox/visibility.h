@@ -66,8 +66,8 @@ struct SortStatistics {
 /// Sorts the cells of one mesh for one view after another; keeps what it needs for that.
 ///
 /// The order depends only on where the eye is, or, for an orthographic camera, on the direction of its rays: turning or
-/// zooming changes nothing. It holds in all directions round the eye, not only within the picture; the eye may be inside
-/// the mesh. For the same mesh, view and options it is the same for any number of threads.
+/// zooming changes nothing. It holds in all directions round the eye, not only within the picture; the eye may be
+/// inside the mesh. For the same mesh, view and options it is the same for any number of threads.
 ///
 /// Views the mesh, which must live longer. Not for several threads at a time.
 class VisibilitySorter {
@@ -78,8 +78,8 @@ class VisibilitySorter {
   VisibilitySorter(VisibilitySorter&&) noexcept;
   VisibilitySorter& operator=(VisibilitySorter&&) noexcept;
 
-  /// Every cell id of the mesh once, in visibility order, from the back to the front unless asked otherwise. Valid until
-  /// the next call.
+  /// Every cell id of the mesh once, in visibility order, from the back to the front unless asked otherwise. Valid
+  /// until the next call.
   ///
   /// Where cells hide one another in a circle there is no such order. Then the farthest cell of the circle, by its
   /// centroid, is put behind the others (mpvonc: the relation that closes the circle is left out); the statistics count
@@ -109,13 +109,13 @@ struct OrderReport {
   std::uint64_t face_pairs = 0;       ///< pairs of cells with a common face that the eye does not see edge-on
   std::uint64_t face_violations = 0;  ///< of these, in the wrong order
 
-  std::uint64_t rays = 0;              ///< that meet a cell
-  std::uint64_t segments = 0;          ///< cells met by rays
-  std::uint64_t wrong_segments = 0;    ///< composited on the wrong side of a cell that lies in front of them
-  std::uint64_t wrong_rays = 0;        ///< with such a segment
-  std::uint64_t thin_segments = 0;     ///< left out: not longer than rounding
-  std::uint64_t intersections = 0;     ///< neighbours along a ray that overlap: cells that intersect, not compared
-  std::uint64_t intersecting_rays = 0; ///< with such neighbours
+  std::uint64_t rays = 0;               ///< that meet a cell
+  std::uint64_t segments = 0;           ///< cells met by rays
+  std::uint64_t wrong_segments = 0;     ///< composited on the wrong side of a cell that lies in front of them
+  std::uint64_t wrong_rays = 0;         ///< with such a segment
+  std::uint64_t thin_segments = 0;      ///< left out: not longer than rounding
+  std::uint64_t intersections = 0;      ///< neighbours along a ray that overlap: cells that intersect, not compared
+  std::uint64_t intersecting_rays = 0;  ///< with such neighbours
 };
 
 /// Checks an order by brute force: all pairs of cells that share a face, and along every ray all cells that it meets,

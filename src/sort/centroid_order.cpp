@@ -49,8 +49,7 @@ std::pair<std::uint32_t, std::uint32_t> write_keys(const PreparedMesh& mesh, std
     ranges[chunk] = {least, greatest};
   });
   std::pair<std::uint32_t, std::uint32_t> range{0xFFFFFFFFu, 0};
-  for (const auto& [least, greatest] : ranges)
-    range = {std::min(range.first, least), std::max(range.second, greatest)};
+  for (const auto& [least, greatest] : ranges) range = {std::min(range.first, least), std::max(range.second, greatest)};
   return range;
 }
 
@@ -95,9 +94,8 @@ void sort_by_centroids(const PreparedMesh& mesh, std::span<const SortedCell> cel
                   [&](std::size_t place, std::uint64_t pair) { buffers.other_pairs[place] = pair; });
     buffers.pairs.swap(buffers.other_pairs);
   }
-  sort_by_digit(buffers.pairs, least, shift, [&](std::size_t place, std::uint64_t pair) {
-    order[place] = static_cast<std::uint32_t>(pair);
-  });
+  sort_by_digit(buffers.pairs, least, shift,
+                [&](std::size_t place, std::uint64_t pair) { order[place] = static_cast<std::uint32_t>(pair); });
 }
 
 }  // namespace tetravox::sort

@@ -11,7 +11,7 @@
 namespace tetravox::sort {
 
 struct CycleCount {
-  std::uint64_t cycles = 0;         ///< strongly connected components of more than one cell
+  std::uint64_t cycles = 0;          ///< strongly connected components of more than one cell
   std::vector<std::uint32_t> cells;  ///< in them
 };
 

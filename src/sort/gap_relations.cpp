@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kFewPairs = 64;  // that are compared without dividing further
 constexpr int kSharedLevels = 3;       // after which parts of the picture are given to threads
 constexpr int kMostLevels = 18;
+constexpr std::size_t kGapsPerChunk = 1 << 10;
 constexpr double kDepthSlack = 1e-6;  // more than faces of a seam may lie apart
 
 /// A part of the picture with the faces that may be in it.
@@ -140,6 +141,23 @@ void search_picture(const PreparedMesh& mesh, std::span<const SortedCell> cells,
   for (const auto& part : found) relations.insert(relations.end(), part.begin(), part.end());
 }
 
+/// Two convex cells that do not intersect lie on two sides of a plane, so that only one of them can hide the other.
+/// Where both seem to, across two gaps or across a gap and a face, they intersect, and gaps say nothing about them.
+void remove_contradictions(const PreparedMesh& mesh, std::span<const SortedCell> cells,
+                           std::span<const CellSides> sides, std::vector<GapRelation>& gaps) {
+  const Relations relations{&mesh, cells, sides, gaps};
+  std::vector<std::uint8_t> is_contradicted(gaps.size(), 0);
+  support::parallel_chunks(gaps.size(), kGapsPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      relations.for_each_front(gaps[i].front,
+                               [&](std::uint32_t front) { is_contradicted[i] |= front == gaps[i].behind; });
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < gaps.size(); ++i)
+    if (!is_contradicted[i]) gaps[kept++] = gaps[i];
+  gaps.resize(kept);
+}
+
 }  // namespace
 
 std::vector<GapRelation> find_gap_relations(const PreparedMesh& mesh, std::span<const SortedCell> cells,
@@ -151,6 +169,7 @@ std::vector<GapRelation> find_gap_relations(const PreparedMesh& mesh, std::span<
   }
   tbb::parallel_sort(relations.begin(), relations.end());
   relations.erase(std::unique(relations.begin(), relations.end()), relations.end());
+  remove_contradictions(mesh, cells, sides, relations);
   return relations;
 }
 

@@ -16,7 +16,8 @@ struct Name {
 };
 
 constexpr std::array<Name, 4> kSortMethods{
-    {{SortMethod::kCentroid, "centroid", "distance of centroids, radix sort; for comparison, and when only speed counts"},
+    {{SortMethod::kCentroid, "centroid",
+      "distance of centroids, radix sort; for comparison, and when only speed counts"},
      {SortMethod::kMpvo, "mpvo", "meshed polyhedra visibility ordering: exact for convex meshes (Williams 1992)"},
      {SortMethod::kMpvonc, "mpvonc", "his heuristic for other meshes, depth first from the boundary (Williams 1992)"},
      {SortMethod::kXmpvo, "xmpvo",

@@ -27,8 +27,8 @@ using sort::operator+, sort::operator-, sort::operator*;
 
 constexpr std::size_t kGrain = 1 << 12;
 constexpr std::size_t kPixelsAtATime = 1 << 15;
-constexpr double kThin = 1e-9;         // local lengths: segments of rounding
-constexpr double kTouch = 1e-6;        // cells that overlap less follow each other: vertices are floats
+constexpr double kThin = 1e-9;   // local lengths: segments of rounding
+constexpr double kTouch = 1e-6;  // cells that overlap less follow each other: vertices are floats
 constexpr double kNearestDepth = 1e-9;
 
 /// A cell on a ray.
@@ -50,13 +50,13 @@ struct PixelRange {
 };
 
 /// Place of each cell, counted from the back; empty where the order is no permutation.
-std::vector<std::uint32_t> find_places(std::span<const std::uint32_t> order, std::size_t cells, SortDirection direction) {
+std::vector<std::uint32_t> find_places(std::span<const std::uint32_t> order, std::size_t cells,
+                                       SortDirection direction) {
   if (order.size() != cells) return {};
   std::vector<std::uint32_t> places(cells, kNoCell);
   for (std::size_t i = 0; i < cells; ++i) {
     if (order[i] >= cells || places[order[i]] != kNoCell) return {};
-    places[order[i]] =
-        static_cast<std::uint32_t>(direction == SortDirection::kBackToFront ? i : cells - 1 - i);
+    places[order[i]] = static_cast<std::uint32_t>(direction == SortDirection::kBackToFront ? i : cells - 1 - i);
   }
   return places;
 }
@@ -156,8 +156,7 @@ class SegmentFinder {
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t k = i + 1; k < 4; ++k)
         if ((seen[i][2] < kNearestDepth) != (seen[k][2] < kNearestDepth)) {
-          Vector3 cut =
-              seen[i] + (seen[k] - seen[i]) * ((kNearestDepth - seen[i][2]) / (seen[k][2] - seen[i][2]));
+          Vector3 cut = seen[i] + (seen[k] - seen[i]) * ((kNearestDepth - seen[i][2]) / (seen[k][2] - seen[i][2]));
           cut[2] = kNearestDepth;
           add(cut);
         }

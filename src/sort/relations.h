@@ -24,8 +24,8 @@ struct GapRelation {
 struct Relations {
   const PreparedMesh* mesh = nullptr;
   std::span<const SortedCell> cells;
-  std::span<const CellSides> sides;    ///< [cells]
-  std::span<const GapRelation> gaps;   ///< ascending, without repetitions
+  std::span<const CellSides> sides;   ///< [cells]
+  std::span<const GapRelation> gaps;  ///< ascending, without repetitions
 
   std::size_t cell_count() const { return cells.size(); }
 

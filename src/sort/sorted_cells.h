@@ -14,8 +14,8 @@ namespace tetravox::sort {
 /// ascending order has positive volume, second where it has negative volume.
 ///
 /// Orientation is what `prepare_mesh` found in the input's own numbers; it is handed from the boundary from cell to
-/// cell, never computed from the rounded places of the vertices. So both cells of a face agree which of them is on which
-/// side, however flat they are.
+/// cell, never computed from the rounded places of the vertices. So both cells of a face agree which of them is on
+/// which side, however flat they are.
 struct SortedCell {
   std::array<std::uint32_t, 4> ids{kNoCell, kNoCell, kNoCell, kNoCell};
 
@@ -36,6 +36,8 @@ inline std::array<std::uint32_t, 3> face_opposite(const std::array<std::uint32_t
 }
 
 /// Whether the face opposite the vertex of a rank, in ascending order, faces out of the cell.
-inline bool is_outwards(std::size_t rank, bool is_ascending_negative) { return (rank % 2 == 0) != is_ascending_negative; }
+inline bool is_outwards(std::size_t rank, bool is_ascending_negative) {
+  return (rank % 2 == 0) != is_ascending_negative;
+}
 
 }  // namespace tetravox::sort

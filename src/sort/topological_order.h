@@ -17,8 +17,8 @@ struct CycleReport {
 
 /// Memory that is used again.
 struct TopologicalBuffers {
-  std::vector<std::uint8_t> states;          ///< [cells]
-  std::vector<std::uint32_t> gap_waits;      ///< [cells]: rear cells across gaps that are still to come
+  std::vector<std::uint8_t> states;      ///< [cells]
+  std::vector<std::uint32_t> gap_waits;  ///< [cells]: rear cells across gaps that are still to come
   std::vector<std::uint32_t> stack;
 
   std::uint64_t bytes() const {

@@ -45,8 +45,8 @@ struct ViewPoint {
 /// @throws Error (kInvalidArgument) where the camera defines no view.
 ViewPoint make_view_point(const PreparedMesh& mesh, const Camera& camera);
 
-/// The rays through the middles of pixels: from `origin(column, row)` along `direction(column, row)`, which has length 1
-/// along the line of sight.
+/// The rays through the middles of pixels: from `origin(column, row)` along `direction(column, row)`, which has length
+/// 1 along the line of sight.
 struct PixelRays {
   Vector3 eye{};  ///< local; orthographic: somewhere in the plane of the camera
   Vector3 right{}, up{}, forward{};

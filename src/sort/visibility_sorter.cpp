@@ -112,9 +112,8 @@ OrderReuse VisibilitySorter::State::bring_up_to_date(const ViewPoint& view, cons
   // How cycles are broken depends on distances, too.
   if (is_same && is_same_method && last_cycles.cycles == 0) return OrderReuse::kSameSides;
   const sort::Relations relations{&mesh, cells, sides, gaps};
-  last_cycles = options.method == SortMethod::kMpvonc
-                    ? sort::sort_depth_first(relations, roots, topological, order)
-                    : sort::sort_by_counting(relations, view, topological, order);
+  last_cycles = options.method == SortMethod::kMpvonc ? sort::sort_depth_first(relations, roots, topological, order)
+                                                      : sort::sort_by_counting(relations, view, topological, order);
   last_direction = SortDirection::kBackToFront;
   return OrderReuse::kNone;
 }
