@@ -113,7 +113,7 @@ struct OrderReport {
   std::uint64_t segments = 0;           ///< cells met by rays
   std::uint64_t wrong_segments = 0;     ///< composited on the wrong side of a cell that lies in front of them
   std::uint64_t wrong_rays = 0;         ///< with such a segment
-  std::uint64_t thin_segments = 0;      ///< left out: not longer than rounding
+  std::uint64_t thin_segments = 0;      ///< left out: not longer than rounding, or along a face
   std::uint64_t intersections = 0;      ///< neighbours along a ray that overlap: cells that intersect, not compared
   std::uint64_t intersecting_rays = 0;  ///< with such neighbours
 };

@@ -118,13 +118,29 @@ class SegmentFinder {
         const Interval interval = sort::intersect_cell(corners, rays_.origin(column, row), rays_.direction(column, row),
                                                        least, std::numeric_limits<double>::max());
         if (!(interval.length() > 0.0)) continue;
-        if (interval.length() < kThin)
+        if (interval.length() < kThin || goes_along_face(corners, column, row))
           ++thin;
         else
           found.push_back({static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(rays_.width) +
                                static_cast<std::uint32_t>(column),
                            places_[cell], interval});
       }
+  }
+
+  /// Whether the ray lies in the plane of a face, to within rounding: such a ray is in both cells of the face at a
+  /// time.
+  bool goes_along_face(const std::array<Vector3, 4>& corners, int column, int row) const {
+    constexpr double kRounding = 1e-11;
+    const Vector3 origin = rays_.origin(column, row), direction = rays_.direction(column, row);
+    for (std::size_t rank = 0; rank < 4; ++rank) {
+      const Vector3& a = corners[(rank + 1) & 3];
+      const Vector3 normal = sort::cross(corners[(rank + 2) & 3] - a, corners[(rank + 3) & 3] - a);
+      const double length = sort::norm(normal);
+      if (std::abs(sort::dot(normal, direction)) <= kRounding * length * sort::norm(direction) &&
+          std::abs(sort::dot(normal, origin - a)) <= kRounding * length * (1.0 + sort::norm(origin)))
+        return true;
+    }
+    return false;
   }
 
   /// Pixels whose rays may meet the cell.
