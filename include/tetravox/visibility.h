@@ -38,15 +38,16 @@ enum class SortDirection { kBackToFront, kFrontToBack };
 struct SortOptions {
   SortMethod method = SortMethod::kXmpvo;
   SortDirection direction = SortDirection::kBackToFront;
-  bool use_last_order = true;  ///< answer from the last call's order where it is still right
+  bool use_last_order = true;  ///< begin with the last call's order where that is faster
   int threads = 0;             ///< 0: all cores
 };
 
 /// How much of the last order a call could use.
 enum class OrderReuse {
-  kNone,      ///< sorted anew
-  kSameView,  ///< the eye (orthographic: the direction) is where it was: nothing was computed
-  kSameSides  ///< everything that the method looks at came out as before, so the order is the same
+  kNone,       ///< sorted anew
+  kSameView,   ///< the eye (orthographic: the direction) is where it was: nothing was computed
+  kSameSides,  ///< everything that the method looks at came out as before, so the order is the same
+  kRepaired    ///< only stretches of the order were sorted anew (mpvo and xmpvo)
 };
 
 struct SortStatistics {
@@ -60,6 +61,7 @@ struct SortStatistics {
   std::uint64_t cycles = 0, cyclic_cells = 0;
   std::uint64_t broken_relations = 0;  ///< that the order does not keep, because of cycles
   OrderReuse reuse = OrderReuse::kNone;
+  std::uint64_t sorted_cells = 0;  ///< that were sorted anew
   int threads = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "src/sort/centroid_order.h"
 #include "src/sort/face_sides.h"
 #include "src/sort/gap_relations.h"
+#include "src/sort/order_repair.h"
 #include "src/sort/relations.h"
 #include "src/sort/sorted_cells.h"
 #include "src/sort/topological_order.h"
@@ -64,6 +65,7 @@ struct VisibilitySorter::State {
   std::vector<std::uint32_t> roots, last_roots;
   sort::TopologicalBuffers topological;
   sort::CentroidBuffers centroid;
+  sort::RepairBuffers repair;
 
   // The last order, and what it was made for.
   std::vector<std::uint32_t> order;
@@ -71,12 +73,14 @@ struct VisibilitySorter::State {
   SortDirection last_direction = SortDirection::kBackToFront;
   ViewPoint last_view;
   sort::CycleReport last_cycles;
+  int calls_without_trying = 0;  ///< to repair
 
   explicit State(const PreparedMesh& prepared)
       : mesh(prepared), cells(sort::find_sorted_cells(prepared)), radius(find_radius(prepared)) {}
 
   OrderReuse bring_up_to_date(const ViewPoint& view, const SortOptions& options, SortStatistics& statistics);
   bool find_relations(const ViewPoint& view, SortMethod method, SortStatistics& statistics);
+  std::optional<std::uint64_t> try_repair(const sort::Relations& relations, SortMethod method);
   void turn(SortDirection direction);
 };
 
@@ -96,12 +100,26 @@ bool VisibilitySorter::State::find_relations(const ViewPoint& view, SortMethod m
   return sides == last_sides && gaps == last_gaps && roots == last_roots;
 }
 
+/// Repairs the last order; not where that failed a moment ago, nor where the order follows distances, too.
+std::optional<std::uint64_t> VisibilitySorter::State::try_repair(const sort::Relations& relations, SortMethod method) {
+  constexpr int kCallsWithoutTrying = 3;
+  if (method == SortMethod::kMpvonc) return std::nullopt;
+  if (calls_without_trying > 0) {
+    --calls_without_trying;
+    return std::nullopt;
+  }
+  const auto sorted = sort::repair_order(relations, repair, topological, order);
+  if (!sorted) calls_without_trying = kCallsWithoutTrying;
+  return sorted;
+}
+
 OrderReuse VisibilitySorter::State::bring_up_to_date(const ViewPoint& view, const SortOptions& options,
                                                      SortStatistics& statistics) {
   const bool is_same_method = options.use_last_order && last_method == options.method;
   if (is_same_method && last_view == view) return OrderReuse::kSameView;
   last_method.reset();  // until all is done
   last_view = view;
+  statistics.sorted_cells = cells.size();
   if (options.method == SortMethod::kCentroid) {
     last_cycles = {};
     sort::sort_by_centroids(mesh, cells, view, centroid, order);
@@ -109,9 +127,19 @@ OrderReuse VisibilitySorter::State::bring_up_to_date(const ViewPoint& view, cons
     return OrderReuse::kNone;
   }
   const bool is_same = find_relations(view, options.method, statistics);
-  // How cycles are broken depends on distances, too.
-  if (is_same && is_same_method && last_cycles.cycles == 0) return OrderReuse::kSameSides;
   const sort::Relations relations{&mesh, cells, sides, gaps};
+  // How cycles are broken depends on distances, too.
+  if (is_same_method && last_cycles.cycles == 0) {
+    if (is_same) {
+      statistics.sorted_cells = 0;
+      return OrderReuse::kSameSides;
+    }
+    turn(SortDirection::kBackToFront);
+    if (const auto sorted = try_repair(relations, options.method)) {
+      statistics.sorted_cells = *sorted;
+      return OrderReuse::kRepaired;
+    }
+  }
   last_cycles = options.method == SortMethod::kMpvonc ? sort::sort_depth_first(relations, roots, topological, order)
                                                       : sort::sort_by_counting(relations, view, topological, order);
   last_direction = SortDirection::kBackToFront;
@@ -155,7 +183,8 @@ std::uint64_t VisibilitySorter::bytes() const {
   const State& s = *state_;
   const auto bytes_of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
   return bytes_of(s.cells) + bytes_of(s.sides) + bytes_of(s.last_sides) + bytes_of(s.gaps) + bytes_of(s.last_gaps) +
-         bytes_of(s.roots) + bytes_of(s.last_roots) + bytes_of(s.order) + s.topological.bytes() + s.centroid.bytes();
+         bytes_of(s.roots) + bytes_of(s.last_roots) + bytes_of(s.order) + s.topological.bytes() + s.centroid.bytes() +
+         s.repair.bytes();
 }
 
 }  // namespace tetravox
