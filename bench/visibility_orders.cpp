@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,6 @@ struct Row {
   std::vector<double> rates;
   OrderReport errors;
   std::uint64_t cycles = 0, cyclic_cells = 0, broken = 0, relations = 0;
-  double gap_ms = 0;
 };
 
 void add_view(const PreparedMesh& mesh, const Camera& camera, SortMethod method, int pixels, Row& row) {
@@ -82,7 +82,6 @@ void add_view(const PreparedMesh& mesh, const Camera& camera, SortMethod method,
   row.errors.wrong_segments += report.wrong_segments;
   row.errors.wrong_rays += report.wrong_rays;
   row.errors.intersections += report.intersections;
-  row.gap_ms += statistics.boundary_seconds * 1e3;
   row.cycles += statistics.cycles;
   row.cyclic_cells += statistics.cyclic_cells;
   row.broken += statistics.broken_relations;
@@ -97,8 +96,8 @@ void measure(const std::string& input, const Settings& settings) {
     for (const Camera& camera : views)
       add_view(mesh, camera, tetravox::sort_method_from_name(name), settings.pixels, row);
     std::sort(row.rates.begin(), row.rates.end());
-    std::printf("| %s | %s | %.1f M | %llu of %llu | %llu of %llu | %llu | %llu (%llu) | %llu |\n", input.c_str(),
-                name.c_str(), row.rates[row.rates.size() / 2] * 1e-6,
+    std::printf("| %s | %s | %.1f M | %llu of %llu | %llu of %llu | %llu | %llu (%llu) | %llu |\n",
+                std::filesystem::path(input).filename().c_str(), name.c_str(), row.rates[row.rates.size() / 2] * 1e-6,
                 static_cast<unsigned long long>(row.errors.face_violations),
                 static_cast<unsigned long long>(row.errors.face_pairs),
                 static_cast<unsigned long long>(row.errors.wrong_segments),

@@ -74,7 +74,7 @@ struct SortStatistics {
 /// Views the mesh, which must live longer. Not for several threads at a time.
 class VisibilitySorter {
  public:
-  /// Recovers the vertices of all cells: 16 bytes a cell, and about 20 more for buffers once it sorts.
+  /// Recovers the vertices of all cells: 16 bytes a cell, and 12 to 24 more for buffers once it sorts.
   explicit VisibilitySorter(const PreparedMesh& mesh);
   ~VisibilitySorter();
   VisibilitySorter(VisibilitySorter&&) noexcept;

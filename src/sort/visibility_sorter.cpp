@@ -170,7 +170,7 @@ std::span<const std::uint32_t> VisibilitySorter::sort(const Camera& camera, cons
     state_->turn(options.direction);
   });
   measured.cells = state_->order.size();
-  measured.boundary_relations = state_->gaps.size();
+  measured.boundary_relations = options.method == SortMethod::kXmpvo ? state_->gaps.size() : 0;
   measured.cycles = state_->last_cycles.cycles;
   measured.cyclic_cells = state_->last_cycles.cyclic_cells;
   measured.broken_relations = state_->last_cycles.broken_relations;

@@ -111,6 +111,7 @@ TEST(Reuse, AnotherMethodIsNotAnsweredFromTheLast) {
       SortStatistics statistics;
       const auto order = sorter.sort(camera, {.method = method}, &statistics);
       EXPECT_EQ(statistics.reuse, OrderReuse::kNone);
+      EXPECT_EQ(statistics.boundary_relations > 0, method == SortMethod::kXmpvo);
       VisibilitySorter fresh(mesh);
       EXPECT_TRUE(std::ranges::equal(fresh.sort(camera, {.method = method}), order)) << name_of(method);
     }
