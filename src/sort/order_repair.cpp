@@ -9,7 +9,7 @@ namespace tetravox::sort {
 namespace {
 
 constexpr std::size_t kGrain = 1 << 14;
-constexpr std::size_t kLargestShare = 3;  // of the order, as a fraction: beyond it sorting anew is as fast
+constexpr std::size_t kLargestShare = 2;  // of the order, as a fraction: beyond it sorting anew is as fast
 
 /// Places [begin, end) of the order.
 struct Stretch {

@@ -24,7 +24,7 @@ struct RepairBuffers {
 /// A relation that the order does not keep any more spans a stretch of it. Stretches that overlap become one, and each
 /// is sorted by its own relations alone: what lies before and behind it stays there, so that no relation between a cell
 /// within and one without can break. Between near views few faces turn over, and the stretches are short.
-/// Returns nothing, and leaves the order as it is, where they take up more than a third of it, or hold a cycle.
+/// Returns nothing, and leaves the order as it is, where they take up more than half of it, or hold a cycle.
 std::optional<std::uint64_t> repair_order(const Relations& relations, RepairBuffers& repair,
                                           TopologicalBuffers& buffers, std::vector<std::uint32_t>& order);
 

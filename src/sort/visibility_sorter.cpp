@@ -73,14 +73,12 @@ struct VisibilitySorter::State {
   SortDirection last_direction = SortDirection::kBackToFront;
   ViewPoint last_view;
   sort::CycleReport last_cycles;
-  int calls_without_trying = 0;  ///< to repair
 
   explicit State(const PreparedMesh& prepared)
       : mesh(prepared), cells(sort::find_sorted_cells(prepared)), radius(find_radius(prepared)) {}
 
   OrderReuse bring_up_to_date(const ViewPoint& view, const SortOptions& options, SortStatistics& statistics);
   bool find_relations(const ViewPoint& view, SortMethod method, SortStatistics& statistics);
-  std::optional<std::uint64_t> try_repair(const sort::Relations& relations, SortMethod method);
   void turn(SortDirection direction);
 };
 
@@ -98,19 +96,6 @@ bool VisibilitySorter::State::find_relations(const ViewPoint& view, SortMethod m
   if (method == SortMethod::kXmpvo) gaps = sort::find_gap_relations(mesh, cells, sides, view, radius);
   statistics.boundary_seconds = timer.seconds() - statistics.relation_seconds;
   return sides == last_sides && gaps == last_gaps && roots == last_roots;
-}
-
-/// Repairs the last order; not where that failed a moment ago, nor where the order follows distances, too.
-std::optional<std::uint64_t> VisibilitySorter::State::try_repair(const sort::Relations& relations, SortMethod method) {
-  constexpr int kCallsWithoutTrying = 3;
-  if (method == SortMethod::kMpvonc) return std::nullopt;
-  if (calls_without_trying > 0) {
-    --calls_without_trying;
-    return std::nullopt;
-  }
-  const auto sorted = sort::repair_order(relations, repair, topological, order);
-  if (!sorted) calls_without_trying = kCallsWithoutTrying;
-  return sorted;
 }
 
 OrderReuse VisibilitySorter::State::bring_up_to_date(const ViewPoint& view, const SortOptions& options,
@@ -135,10 +120,12 @@ OrderReuse VisibilitySorter::State::bring_up_to_date(const ViewPoint& view, cons
       return OrderReuse::kSameSides;
     }
     turn(SortDirection::kBackToFront);
-    if (const auto sorted = try_repair(relations, options.method)) {
-      statistics.sorted_cells = *sorted;
-      return OrderReuse::kRepaired;
-    }
+    // The order of mpvonc follows distances, too: there is nothing to keep.
+    if (options.method != SortMethod::kMpvonc)
+      if (const auto sorted = sort::repair_order(relations, repair, topological, order)) {
+        statistics.sorted_cells = *sorted;
+        return OrderReuse::kRepaired;
+      }
   }
   last_cycles = options.method == SortMethod::kMpvonc ? sort::sort_depth_first(relations, roots, topological, order)
                                                       : sort::sort_by_counting(relations, view, topological, order);

@@ -62,7 +62,7 @@ TEST(Reuse, NearViewsAreAnsweredFromTheLastOrder) {
       EXPECT_TRUE(report.is_permutation);
       EXPECT_EQ(report.wrong_segments + report.face_violations, 0u) << name_of(method) << " " << step;
       if (statistics.reuse == OrderReuse::kRepaired) {
-        EXPECT_LE(statistics.sorted_cells, mesh.cells.size() / 3);
+        EXPECT_LE(statistics.sorted_cells, mesh.cells.size() / 2);
       }
     }
     const bool goes_by_sides = method == SortMethod::kMpvo || method == SortMethod::kXmpvo;
