@@ -47,7 +47,7 @@ test:
 bench:
 	@tools/install_dependencies.sh build bench
 	@$(CONFIGURE) -DTETRAVOX_WITH_BENCH=ON
-	@cmake --build --preset release --parallel $(JOBS) --target product export_dataset
+	@cmake --build --preset release --parallel $(JOBS) --target product export_dataset visibility_orders
 	@/usr/bin/python3 bench/run.py --build $(BUILD) $(if $(QUICK),--quick) $(if $(README),--readme $(README))
 
 papers:

@@ -3,7 +3,7 @@
 
     bench/run.py [--build build/release] [--shared DIR] [--out out/bench] [--quick] [--readme README.md]
 
-Writes results.json and tables.md, and prints the tables. The programs take turns (A B C A B C ..), so that a
+Writes results.json, tables.md and orders.md (visibility orders), and prints the tables. The programs take turns (A B C A B C ..), so that a
 machine that slows down slows all of them; every time is a median. What cannot run says SKIPPED and why.
 """
 import argparse
@@ -14,6 +14,7 @@ import sys
 
 import effect_workloads
 import grid_workloads
+import order_workloads
 import peers
 import report
 import workloads
@@ -67,8 +68,12 @@ def main():
         file.write(tables)
     if options.readme:
         report.replace_block(options.readme, tables)
+    orders = order_workloads.measure_orders(options)
+    with open(os.path.join(options.out, "orders.md"), "w") as file:
+        file.write(orders)
     print(tables)
-    print(f"written: {options.out}/tables.md and results.json")
+    print(orders)
+    print(f"written: {options.out}/tables.md, orders.md and results.json")
 
 
 if __name__ == "__main__":

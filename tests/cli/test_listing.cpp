@@ -24,6 +24,8 @@ TEST_F(Listing, HelpAndVersion) {
                                      "--time", "a whole number is an index", "Examples:", "--statistics"});
   expect_text({"info", "--help"}, {"--json", "--time"});
   expect_text({"histogram", "--help"}, {"--kind", "--counts", "--bins", "--gradient-range", "--time", "Examples:"});
+  expect_text({"order", "--help"},
+              {"--sort", "--check", "--camera-position", "--direction", "--statistics", "Examples:"});
   expect_text({"list", "--help"}, {"presets"});
   expect_text({"--version"}, {"tetravox 0."});
 }
@@ -34,6 +36,8 @@ TEST_F(Listing, Topics) {
   expect_text({"list", "builtins"}, {"builtin:sphere", "builtin:buckyball", "builtin:duct"});
   expect_text({"list", "devices"}, {"Devices for --backend gl"});
   expect_text({"list", "environments"}, {"builtin:studio", "builtin:sky", "builtin:room"});
+  expect_text({"list", "sorts"},
+              {"centroid", "mpvo", "mpvonc", "xmpvo", "Williams 1992", "Silva, Mitchell, Williams 1998"});
   expect_text({"list", "methods"},
               {"walk", "antiderivative", "partial", "post", "table3d", "polynomial=N", "cylindrical", "2000)",
                "Gradients (--gradient)", "central", "Shadows (--shadows)", "exact",
