@@ -1,5 +1,6 @@
 #include "src/gl/integrator_tables.h"
 
+#include "src/optics/iso_value_table.h"
 #include "src/optics/transparency_table.h"
 #include "tetravox/error.h"
 
@@ -12,7 +13,7 @@ constexpr GLuint kControlPointUnit = 2, kFirstIntervalUnit = 3, kTableUnit = 4, 
 constexpr GLuint kTablesBinding = 1;
 
 const IntegratorShader kCell{"cell data", "integrators/cell.glsl", {}};
-const IntegratorShader kPartial{"partial", "integrators/partial.glsl", {}};
+const IntegratorShader kPartial{"partial", "integrators/partial.glsl", {{"ISO_VALUES", "1"}}};
 const IntegratorShader kTable3d{"table3d", "integrators/table3d.glsl", {}};
 const IntegratorShader kCylindrical{"cylindrical", "integrators/cylindrical.glsl", {}};
 const IntegratorShader kPost{"post", "integrators/post.glsl", {}};
@@ -81,7 +82,7 @@ void IntegratorTables::set_transfer_function(const OpticalFunction& function, co
   ray_integrals_.invalidate();
   if (!sources_.is_constant)
     optics::build_antiderivative_table(function, sources.map, sources.range, sources.longest, antiderivative_);
-  has_antiderivatives_ = has_control_points_ = false;
+  has_antiderivatives_ = has_control_points_ = has_iso_values_ = false;
 }
 
 void IntegratorTables::upload_antiderivatives() {
@@ -131,6 +132,16 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance, con
       has_absorbed_ = true;
     }
     absorbed_.bind_texture(kTableUnit);
+    if (!has_iso_values_) {
+      constexpr int kSide = optics::IsoValueTable::kSize;
+      const optics::IsoValueTable table = optics::build_iso_value_table(control_points_);
+      iso_values_.resize(GL_RGBA32F, kSide, kSide);
+      glTextureSubImage2D(iso_values_.get(), 0, 0, 0, kSide, kSide, GL_RGBA, GL_FLOAT, table.texels.data());
+      first_iso_ = table.first;
+      isos_per_scalar_ = table.texels_per_scalar;
+      has_iso_values_ = true;
+    }
+    iso_values_.bind_texture(kVariationUnit);
   }
   if (scene::is_of_tables(integrator)) {
     const double longest = sources_.longest_segment > 0.0 ? sources_.longest_segment : sources_.longest;
@@ -161,6 +172,8 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance, con
   block.last_bucket = static_cast<int>(control_points_.first_interval.size()) - 1;
   block.samples = settings.samples;
   block.interval_count = control_points_.interval_count;
+  block.first_iso = first_iso_;
+  block.isos_per_scalar = isos_per_scalar_;
   block_.upload(&block, sizeof(block));
   block_.bind_uniform(kTablesBinding);
 }
@@ -168,7 +181,7 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance, con
 std::uint64_t IntegratorTables::bytes() const {
   return antiderivative_.bytes() + preintegration_.bytes() + ray_integrals_.bytes() + control_points_.bytes() +
          nodes_.bytes() + marks_.bytes() + variation_.bytes() + points_.bytes() + intervals_.bytes() +
-         (has_absorbed_ ? absorbed_.bytes() : 0) + block_.bytes();
+         absorbed_.bytes() + iso_values_.bytes() + block_.bytes();
 }
 
 }  // namespace tetravox::gl

@@ -67,7 +67,9 @@ class IntegratorTables {
   scene::PreintegrationCache preintegration_;
   PreintegrationTextures ray_integrals_;
   Picture absorbed_;
-  bool has_absorbed_ = false;
+  Picture iso_values_;
+  bool has_absorbed_ = false, has_iso_values_ = false;
+  float first_iso_ = 0.0f, isos_per_scalar_ = 0.0f;
   Buffer block_;
 };
 

@@ -37,8 +37,27 @@ struct Course {
   bool is_pending;
 };
 
+#ifdef ISO_VALUES
+// [back][front]: first and next iso-value that a segment meets, the interval before the first (Espinha and Celes 2005).
+layout(binding = 5) uniform sampler2D iso_values;
+
+// The interval in which a ray sets out, by their tie rule: see `optics::find_front_interval`.
+int first_guess(Segment segment) {
+  ivec2 size = textureSize(iso_values, 0);
+  vec2 at = (vec2(segment.scalar_front, segment.scalar_back) - tables.first_iso) * tables.isos_per_scalar;
+  ivec2 texel = ivec2(clamp(at, vec2(0.0), vec2(size - 1)));
+  vec4 isos = texelFetch(iso_values, texel, 0);
+  ivec2 is_passed = texel.y < texel.x ? ivec2(lessThanEqual(vec2(segment.scalar_front), isos.xy))
+                                      : ivec2(greaterThanEqual(vec2(segment.scalar_front), isos.xy));
+  int passed = is_passed.x + is_passed.y;
+  return int(isos.z) + (texel.y < texel.x ? -passed : passed);
+}
+#else
+int first_guess(Segment segment) { return guess_interval(segment.scalar_front); }
+#endif
+
 Course begin_course(Segment segment) {
-  return Course(segment, 0.0, segment.scalar_front, guess_interval(segment.scalar_front), segment.world_length > 0.0);
+  return Course(segment, 0.0, segment.scalar_front, first_guess(segment), segment.world_length > 0.0);
 }
 
 // On such a piece extinction and colour are linear.

@@ -16,5 +16,5 @@ float buckets_per_scalar;
 int last_bucket;
 int samples;         // of post-classification, a segment
 int interval_count;
-int unused_0;
-int unused_1;
+float first_iso;      // stored scalar where iso-values begin (src/optics/iso_value_table.h)
+float isos_per_scalar;
