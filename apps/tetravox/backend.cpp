@@ -1,6 +1,7 @@
 #include "apps/tetravox/backend.h"
 
 #include "tetravox/error.h"
+#include "tetravox/render.h"
 
 #ifdef TETRAVOX_WITH_GL
 #include "tetravox/gl.h"
@@ -44,6 +45,20 @@ Renderer make_renderer(const Body& body, const MethodOptions& method) {
 std::vector<std::pair<std::string, std::string>> device_names() { return {}; }
 
 #endif
+
+std::vector<std::pair<std::string, std::string>> method_rows() {
+  std::vector<SourceMethods> methods = cpu_methods();
+#ifdef TETRAVOX_WITH_GL
+  for (SourceMethods& method : gl_methods()) methods.push_back(std::move(method));
+#endif
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const SourceMethods& method : methods) {
+    std::string names;
+    for (const Integrator integrator : method.integrators) names += (names.empty() ? "" : ", ") + name_of(integrator);
+    rows.emplace_back(method.backend + " " + name_of(method.source), names);
+  }
+  return rows;
+}
 
 std::string describe_backend(const RenderStatistics& drawn) {
   if (!drawn.device.empty()) return drawn.device;

@@ -16,6 +16,9 @@ namespace tetravox::tool {
 /// A renderer of the backend that is asked for. @throws Error, also where this build has none of OpenGL.
 Renderer make_renderer(const Body& body, const MethodOptions& method);
 
+/// Backends with their sources, and the integrators of each.
+std::vector<std::pair<std::string, std::string>> method_rows();
+
 /// Devices for OpenGL, by number: what they call themselves, and their version.
 std::vector<std::pair<std::string, std::string>> device_names();
 

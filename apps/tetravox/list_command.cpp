@@ -68,7 +68,8 @@ void run_list(const ListOptions& options) {
       std::cout << with_title("Orders of cells (tetravox order --sort):", sort_method_names());
       break;
     case ListOptions::Topic::kMethods:
-      std::cout << with_title("Sources (--source):", source_names())
+      std::cout << with_title("What draws by what (--backend, --source, --integrator):", method_rows())
+                << with_title("Sources (--source):", source_names())
                 << with_title("Classifications (--classification):", classification_names())
                 << with_title("Integrators (--integrator):", integrator_names())
                 << with_title("Orders of entries, by OpenGL (--entry-order):", entry_order_names())

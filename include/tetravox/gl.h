@@ -27,6 +27,9 @@ struct GlOptions {
 /// Those that can draw, in EGL's order; none where there is no EGL. Opens a context on each: tenths of a second.
 std::vector<GlDevice> gl_devices();
 
+/// The sources of this backend, each with the integrators that it draws by.
+std::vector<SourceMethods> gl_methods();
+
 /// A renderer that draws by OpenGL. Views the mesh or grid, which goes into buffers and textures at once. What it
 /// cannot draw yet its `render` refuses by name.
 /// @throws Error: kUnsupported where there is no such device, no OpenGL 4.5, or the data exceeds what the device holds;

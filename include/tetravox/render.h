@@ -120,6 +120,16 @@ std::vector<std::pair<std::string, std::string>> integrator_names();
 std::vector<std::pair<std::string, std::string>> entry_order_names();
 std::vector<std::pair<std::string, std::string>> opacity_weight_names();
 
+/// The integrators that a source of a backend draws by.
+struct SourceMethods {
+  std::string backend;  ///< "cpu" or "gl"
+  Source source = Source::kWalk;
+  std::vector<Integrator> integrators;
+};
+
+/// Those of the CPU; those of OpenGL are in gl.h.
+std::vector<SourceMethods> cpu_methods();
+
 /// The instruction sets compiled in and supported by this machine, best first.
 std::vector<std::string> instruction_sets();
 

@@ -35,6 +35,15 @@ void cpu::note_backend(const RenderSettings& settings, RenderStatistics& statist
   statistics.instruction_set = settings.instruction_set.empty() ? best_instruction_set() : settings.instruction_set;
 }
 
+std::vector<SourceMethods> cpu_methods() {
+  const std::vector<Integrator> both{Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d,
+                                     Integrator::kPolynomial, Integrator::kPost};
+  std::vector<Integrator> walk = both, march = both;
+  walk.push_back(Integrator::kCylindrical);
+  march.push_back(Integrator::kPre);
+  return {{"cpu", Source::kWalk, walk}, {"cpu", Source::kMarch, march}};
+}
+
 std::vector<std::string> instruction_sets() { return cpu::available_instruction_sets(); }
 
 }  // namespace tetravox

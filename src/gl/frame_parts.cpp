@@ -2,6 +2,7 @@
 
 #include "tetravox/error.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -46,7 +47,7 @@ void FrameParts::begin(const Limits& limits, const scene::CameraFrame& camera, d
   };
   upload(rays.column_offset, rays.column_slope, settings.width, columns_);
   upload(rays.row_offset, rays.row_slope, settings.height, rows_);
-  FrameBlock block{};
+  FrameBlock& block = frame_;
   block.width = settings.width;
   block.height = settings.height;
   block.z_near = rays.grid.z_near;
@@ -57,12 +58,18 @@ void FrameParts::begin(const Limits& limits, const scene::CameraFrame& camera, d
   block.pixel_step = static_cast<float>(camera.pixel_step);
   block.is_orthographic = camera.is_orthographic;
   block.use_early_ray_termination = settings.use_early_ray_termination;
-  block_.upload(&block, sizeof(block));
-  block_.bind_uniform(kFrameBinding);
+  set_rows(0, settings.height);
   columns_.bind(kColumnUnit);
   rows_.bind(kRowUnit);
   picture_.resize(GL_RGBA32F, settings.width, settings.height);
   glViewport(0, 0, settings.width, settings.height);
+}
+
+void FrameParts::set_rows(int begin, int end) {
+  frame_.row_begin = begin;
+  frame_.row_end = end;
+  block_.upload(&frame_, sizeof(frame_));
+  block_.bind_uniform(kFrameBinding);
 }
 
 void FrameParts::download(Image& image) const {
@@ -75,8 +82,13 @@ std::uint64_t FrameParts::bytes() const {
   return block_.bytes() + columns_.bytes() + rows_.bytes() + (picture_.get() ? picture_.bytes() : 0);
 }
 
-void dispatch_pixels(const RenderSettings& settings) {
-  glDispatchCompute(static_cast<GLuint>(settings.width + 7) / 8, static_cast<GLuint>(settings.height + 7) / 8, 1);
+void dispatch_pixels(const RenderSettings& settings, int rows) {
+  glDispatchCompute(static_cast<GLuint>(settings.width + 7) / 8, static_cast<GLuint>(rows + 7) / 8, 1);
+}
+
+int rows_of(const RenderSettings& settings, std::uint64_t bytes_a_pixel, const Limits& limits) {
+  const std::uint64_t rows = limits.storage_bytes / (bytes_a_pixel * static_cast<std::uint64_t>(settings.width));
+  return static_cast<int>(std::clamp<std::uint64_t>(rows, 1, static_cast<std::uint64_t>(settings.height)));
 }
 
 }  // namespace tetravox::gl

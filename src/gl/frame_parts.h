@@ -26,18 +26,25 @@ class FrameParts {
   /// @throws Error (kUnsupported) where the picture is too large for the device.
   void begin(const Limits& limits, const scene::CameraFrame& camera, double world_per_local,
              const RenderSettings& settings);
+  /// The rows that passes draw from now on, a part of the picture at a time: what they keep for each pixel must not
+  /// exceed what a device allows for a buffer. `begin` sets all.
+  void set_rows(int begin, int end);
   /// Reads the picture back.
   void download(Image& image) const;
   const Picture& picture() const { return picture_; }
   std::uint64_t bytes() const;
 
  private:
+  FrameBlock frame_{};
   Buffer block_;
   BufferTexture columns_, rows_;
   Picture picture_;
 };
 
-/// Starts one invocation a pixel of the picture, in groups of 8 x 8.
-void dispatch_pixels(const RenderSettings& settings);
+/// Starts one invocation a pixel of so many rows, in groups of 8 x 8.
+void dispatch_pixels(const RenderSettings& settings, int rows);
+
+/// Rows of a picture for which a buffer with that many bytes a pixel can be had.
+int rows_of(const RenderSettings& settings, std::uint64_t bytes_a_pixel, const Limits& limits);
 
 }  // namespace tetravox::gl

@@ -118,4 +118,11 @@ Renderer make_gl_renderer(const PreparedMesh& mesh, const GlOptions& options) {
   return Renderer(gl::make_mesh_renderer(mesh, gl::Context::open(options)));
 }
 
+std::vector<SourceMethods> gl_methods() {
+  return {{"gl",
+           Source::kWalk,
+           {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d, Integrator::kPolynomial,
+            Integrator::kPost, Integrator::kCylindrical}}};
+}
+
 }  // namespace tetravox

@@ -9,7 +9,7 @@
 namespace tetravox::gl {
 namespace {
 
-constexpr GLuint kTableUnit = 4, kRatioUnit = 5, kBlockBinding = 3;
+constexpr GLuint kTableUnit = 4, kRatioUnit = 5, kBlockBinding = 7;
 
 void require_size(int side, int limit) {
   if (side > limit)

@@ -37,8 +37,9 @@ struct PeeledFace {
 /// Entries a pixel that there is room for at first.
 constexpr std::size_t kFirstEntries = 4;
 
-std::size_t pixels_of(const RenderSettings& settings) {
-  return static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
+/// Pixels of the rows at hand.
+std::size_t pixels_of(const WalkFrame& frame) {
+  return static_cast<std::size_t>(frame.settings.width) * static_cast<std::size_t>(frame.row_end - frame.row_begin);
 }
 
 template <class Find>
@@ -77,7 +78,7 @@ void WalkPasses::upload(const WalkBlock& block) {
 
 /// Makes room for a frame, and binds what all of its passes share.
 void WalkPasses::prepare(const WalkFrame& frame) {
-  const std::size_t pixels = pixels_of(frame.settings);
+  const std::size_t pixels = pixels_of(frame);
   if (!no_attributes_) {
     GLuint names[3] = {};
     glCreateVertexArrays(1, &names[0]);
@@ -101,7 +102,7 @@ void WalkPasses::prepare(const WalkFrame& frame) {
 
 /// Fills and sorts the lists of the pixels.
 void WalkPasses::collect_entries(const WalkFrame& frame, WalkBlock& block) {
-  const std::size_t pixels = pixels_of(frame.settings);
+  const std::size_t pixels = pixels_of(frame);
   glNamedFramebufferParameteri(no_target_.get(), GL_FRAMEBUFFER_DEFAULT_WIDTH, frame.settings.width);
   glNamedFramebufferParameteri(no_target_.get(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, frame.settings.height);
   heads_.reserve(pixels * sizeof(std::uint32_t));
@@ -129,12 +130,12 @@ void WalkPasses::collect_entries(const WalkFrame& frame, WalkBlock& block) {
     entries_.reserve(wanted);
   }
   glUseProgram(find_program(programs_, "sort", [] { return std::vector{recipe_of_sorting()}; }).get());
-  dispatch_pixels(frame.settings);
+  dispatch_pixels(frame.settings, frame.row_end - frame.row_begin);
 }
 
 /// Finds the next face that each ray enters through.
 void WalkPasses::peel_layer(const WalkFrame& frame, const WalkBlock& block) {
-  const std::size_t bytes = pixels_of(frame.settings) * sizeof(PeeledFace);
+  const std::size_t bytes = pixels_of(frame) * sizeof(PeeledFace);
   if (block.is_first_layer) {
     front_faces_.resize(GL_R32UI, frame.settings.width, frame.settings.height);
     peel_depths_.resize(GL_DEPTH_COMPONENT32F, frame.settings.width, frame.settings.height);
@@ -175,7 +176,7 @@ std::uint64_t WalkPasses::walk(const WalkFrame& frame, WalkBlock& block, RenderS
     counters_.clear_to_zero(sizeof(Counters));
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     glUseProgram(program.get());
-    dispatch_pixels(frame.settings);
+    dispatch_pixels(frame.settings, frame.row_end - frame.row_begin);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     counters_.download(&counters, sizeof(counters));
     statistics.segments += std::accumulate(counters.segments.begin(), counters.segments.end(), std::uint64_t{0});
@@ -187,21 +188,35 @@ std::uint64_t WalkPasses::walk(const WalkFrame& frame, WalkBlock& block, RenderS
   }
 }
 
-void WalkPasses::draw(const WalkFrame& frame, RenderStatistics& statistics) {
+void WalkPasses::draw_rows(const WalkFrame& frame, RenderStatistics& statistics) {
   prepare(frame);
+  glScissor(0, frame.row_begin, frame.settings.width, frame.row_end - frame.row_begin);
   WalkBlock block = frame.block;
   block.is_first_layer = 1;
   if (frame.variant.order == EntryOrder::kLists) {
     collect_entries(frame, block);
-    statistics.rays = walk(frame, block, statistics);
+    statistics.rays += walk(frame, block, statistics);
     return;
   }
   for (bool is_any_left = true; is_any_left; block.is_first_layer = 0) {
     peel_layer(frame, block);
     const std::uint64_t entered = walk(frame, block, statistics);
-    if (block.is_first_layer) statistics.rays = entered;
+    if (block.is_first_layer) statistics.rays += entered;
     is_any_left = entered > 0;
   }
+}
+
+void WalkPasses::draw(const WalkFrame& whole, RenderStatistics& statistics) {
+  const int rows = rows_of(whole.settings, kPauseBytes, whole.limits);
+  glEnable(GL_SCISSOR_TEST);
+  for (int begin = 0; begin < whole.settings.height; begin += rows) {
+    WalkFrame part = whole;
+    part.row_begin = begin;
+    part.row_end = std::min(begin + rows, whole.settings.height);
+    whole.parts.set_rows(part.row_begin, part.row_end);
+    draw_rows(part, statistics);
+  }
+  glDisable(GL_SCISSOR_TEST);
 }
 
 std::uint64_t WalkPasses::bytes() const {

@@ -28,12 +28,13 @@ struct WalkVariant {
 /// One frame, its mesh and tables bound.
 struct WalkFrame {
   WalkBlock block;
-  const FrameParts& parts;
+  FrameParts& parts;
   const RenderSettings& settings;
   IntegratorShader integrator;
   WalkVariant variant;
   const Limits& limits;
   const Progress& progress;
+  int row_begin = 0, row_end = 0;  ///< set by `WalkPasses::draw`, which takes a part of the picture at a time
 };
 
 /// The shader programs of a frame by `walk`.
@@ -50,6 +51,7 @@ class WalkPasses {
   std::uint64_t bytes() const;
 
  private:
+  void draw_rows(const WalkFrame& frame, RenderStatistics& statistics);
   void prepare(const WalkFrame& frame);
   void collect_entries(const WalkFrame& frame, WalkBlock& block);
   void peel_layer(const WalkFrame& frame, const WalkBlock& block);

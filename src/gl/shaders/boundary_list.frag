@@ -15,5 +15,5 @@ void main() {
   if (entry >= walk.node_count) return;
   entries[entry].face = face;
   entries[entry].depth = depth;
-  entries[entry].next = atomicExchange(heads[pixel.y * frame.width + pixel.x], entry);
+  entries[entry].next = atomicExchange(heads[place_of(pixel)], entry);
 }

@@ -11,7 +11,7 @@ void main() {
   MetFace met = meet_face(ray_of(pixel), face);
   float depth = interpolate(max(met.weight, 0.0), met.z, met.z[0]);
   float key = key_of(face, depth);
-  Peeled last = peeled[pixel.y * frame.width + pixel.x];
+  Peeled last = peeled[place_of(pixel)];
   bool is_next = key > last.key || (key == last.key && face > last.face);
   if (!is_entered(met) || is_before_eye(face, depth) || !is_next) discard;
   gl_FragDepth = key;

@@ -22,3 +22,14 @@ Ray ray_of(ivec2 pixel) {
   ray.world_per_z = frame.world_per_local * sqrt(1.0 + ray.slope.x * ray.slope.x + ray.slope.y * ray.slope.y);
   return ray;
 }
+
+// The pixel of an invocation in groups of 8 x 8 over the rows at hand. Those side by side travel together: blocks of 4 x 2
+// pixels, which is a vector of eight on many devices.
+ivec2 pixel_of(uvec3 group, uint index) {
+  uvec2 inside = uvec2((index & 3u) + ((index >> 3u) & 1u) * 4u, ((index >> 2u) & 1u) + (index >> 4u) * 2u);
+  return ivec2(8u * group.xy + inside) + ivec2(0, frame.row_begin);
+}
+bool is_outside_rows(ivec2 pixel) { return pixel.x >= frame.width || pixel.y >= frame.row_end; }
+
+// Where a pixel is in buffers that hold the rows at hand.
+uint place_of(ivec2 pixel) { return uint((pixel.y - frame.row_begin) * frame.width + pixel.x); }

@@ -16,4 +16,4 @@ struct Entry {
 const uint kNoEntry = 0xFFFFFFFFu;
 
 layout(std430, binding = 1) buffer Entries { Entry entries[]; };
-layout(std430, binding = 2) buffer Heads { uint heads[]; };  // [height][width]
+layout(std430, binding = 2) buffer Heads { uint heads[]; };  // [rows][width]

@@ -5,7 +5,7 @@ struct Peeled {
   float key;  // of the face that the ray entered through last
   uint face;
 };
-layout(std430, binding = 4) buffer PeeledFaces { Peeled peeled[]; };  // [height][width]
+layout(std430, binding = 4) buffer PeeledFaces { Peeled peeled[]; };  // [rows][width]
 
 const float kBeforeAll = -1.0;
 const float kBehindAll = 2.0;

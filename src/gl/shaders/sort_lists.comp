@@ -14,9 +14,9 @@ bool is_before(uint a, uint b) {
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (pixel.x >= frame.width || pixel.y >= frame.height) return;
-  uint place = uint(pixel.y * frame.width + pixel.x);
+  ivec2 pixel = pixel_of(gl_WorkGroupID, gl_LocalInvocationIndex);
+  if (is_outside_rows(pixel)) return;
+  uint place = place_of(pixel);
   uint head = heads[place];
   if (head == kNoEntry || entries[head].next == kNoEntry) return;
   for (uint run = 1u;; run *= 2u) {

@@ -16,7 +16,7 @@ struct Pause {  // what a ray needs to go on in another pass
   float z_checked;
   uint entry;  // the next one
 };
-layout(std430, binding = 3) buffer Pauses { Pause pauses[]; };  // [height][width]
+layout(std430, binding = 3) buffer Pauses { Pause pauses[]; };  // [rows][width]
 
 #ifdef PEELING
 #include "peeling.glsl"
@@ -31,7 +31,7 @@ uint entry_behind(uint entry) { return kNoEntry; }
 void note_entered(uint place, uint face, float depth) { peeled[place] = Peeled(key_of(face, depth), face); }
 void end_ray(uint place) { peeled[place].key = kBehindAll; }
 #else
-uint first_entry(ivec2 pixel) { return heads[pixel.y * frame.width + pixel.x]; }
+uint first_entry(ivec2 pixel) { return heads[place_of(pixel)]; }
 uint face_of(uint entry) { return entries[entry].face; }
 uint entry_behind(uint entry) { return entries[entry].next; }
 void note_entered(uint place, uint face, float depth) {}
@@ -59,16 +59,10 @@ void resume(Ray ray, Pause pause, inout Walker walker) {
                       0.0);
 }
 
-// Rays side by side travel together: blocks of 4 x 2 pixels, which is a vector of eight on many devices.
-ivec2 pixel_of(uvec3 group, uint index) {
-  uvec2 inside = uvec2((index & 3u) + ((index >> 3u) & 1u) * 4u, ((index >> 2u) & 1u) + (index >> 4u) * 2u);
-  return ivec2(8u * group.xy + inside);
-}
-
 void main() {
   ivec2 pixel = pixel_of(gl_WorkGroupID, gl_LocalInvocationIndex);
-  if (pixel.x >= frame.width || pixel.y >= frame.height) return;
-  uint place = uint(pixel.y * frame.width + pixel.x);
+  if (is_outside_rows(pixel)) return;
+  uint place = place_of(pixel);
   Ray ray = ray_of(pixel);
   Walker walker;
   walker.cell = kNoCell;

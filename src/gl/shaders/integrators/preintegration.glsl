@@ -2,7 +2,7 @@
 
 #include "segment.glsl"
 
-layout(std140, binding = 3) uniform PreintegrationBlock {
+layout(std140, binding = 7) uniform PreintegrationBlock {
 #include "integrators/preintegration_block.glsl"
 } domain;
 
