@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 set(TETRAVOX_PACKAGE_DIR "${CMAKE_INSTALL_LIBDIR}/cmake/tetravox")
 
 # What `make build` builds: the libraries and, with io, the tool and its reader.
-set(TETRAVOX_LIBRARIES tetravox_support tetravox_optics tetravox_mesh tetravox_grid tetravox_scene tetravox_cpu tetravox_core)
+set(TETRAVOX_LIBRARIES tetravox_support tetravox_optics tetravox_mesh tetravox_grid tetravox_scene tetravox_sort tetravox_cpu tetravox_core)
 set(TETRAVOX_PROGRAMS "")
 if(TETRAVOX_WITH_GL)
   list(APPEND TETRAVOX_LIBRARIES tetravox_gl)

@@ -22,6 +22,7 @@ MAY_INCLUDE = {
     "src/mesh": BASE,
     "src/grid": BASE,
     "src/scene": SCENE,
+    "src/sort": SCENE,
     "src/cpu": SCENE + ["src/cpu/kernels"],
     "src/cpu/kernels": SCENE + ["src/cpu"],
     "src/gl": SCENE,

@@ -71,16 +71,31 @@ Json grid_json(const GridShape& shape) {
           {"uneven_axes", uneven_axes(shape)}};
 }
 
+/// Of all but the first, or of the only one.
+double median_seconds(std::vector<double> seconds) {
+  if (seconds.empty()) return 0.0;
+  if (seconds.size() > 1) seconds.erase(seconds.begin());
+  std::sort(seconds.begin(), seconds.end());
+  const std::size_t middle = seconds.size() / 2;
+  return seconds.size() % 2 == 1 ? seconds[middle] : 0.5 * (seconds[middle - 1] + seconds[middle]);
+}
+
+Json check_json(const OrderReport& report) {
+  return {{"face_pairs", report.face_pairs},
+          {"face_violations", report.face_violations},
+          {"rays", report.rays},
+          {"segments", report.segments},
+          {"wrong_segments", report.wrong_segments},
+          {"wrong_rays", report.wrong_rays},
+          {"thin_segments", report.thin_segments},
+          {"intersections", report.intersections},
+          {"intersecting_rays", report.intersecting_rays}};
+}
+
 }  // namespace
 
-double median_frame_seconds(const PictureStatistics& statistics) {
-  std::vector<double> frames = statistics.frame_seconds;
-  if (frames.empty()) return 0.0;
-  if (frames.size() > 1) frames.erase(frames.begin());
-  std::sort(frames.begin(), frames.end());
-  const std::size_t middle = frames.size() / 2;
-  return frames.size() % 2 == 1 ? frames[middle] : 0.5 * (frames[middle - 1] + frames[middle]);
-}
+double median_frame_seconds(const PictureStatistics& statistics) { return median_seconds(statistics.frame_seconds); }
+double median_sort_seconds(const OrderStatistics& statistics) { return median_seconds(statistics.sort_seconds); }
 
 std::string format_statistics(const PictureStatistics& statistics) {
   Json json;
@@ -121,6 +136,33 @@ std::string format_statistics(const PictureStatistics& statistics) {
   json["resolution"] = {statistics.settings.width, statistics.settings.height};
   json["array"] = statistics.array;
   json["prepare"] = grid ? prepare_json(*grid) : prepare_json(statistics.body.mesh);
+  json["version"] = TETRAVOX_VERSION;
+  return dump(json);
+}
+
+std::string format_statistics(const OrderStatistics& statistics) {
+  const SortStatistics& sort = statistics.sort;
+  Json json;
+  Json& seconds = json["seconds"];
+  seconds["read"] = statistics.read_seconds;
+  seconds["prepare"] = statistics.prepare_seconds;
+  seconds["recover"] = statistics.recover_seconds;
+  seconds["first_sort"] = statistics.sort_seconds.empty() ? 0.0 : statistics.sort_seconds.front();
+  seconds["sort"] = median_sort_seconds(statistics);
+  seconds["relations"] = sort.relation_seconds;
+  seconds["gaps"] = sort.boundary_seconds;
+  json["sorts"] = statistics.sort_seconds.size();
+  json["method"] = name_of(statistics.method);
+  json["cells"] = sort.cells;
+  json["cells_per_second"] = static_cast<double>(sort.cells) / std::max(1e-9, median_sort_seconds(statistics));
+  json["gap_relations"] = sort.boundary_relations;
+  json["cycles"] = sort.cycles;
+  json["cyclic_cells"] = sort.cyclic_cells;
+  json["broken_relations"] = sort.broken_relations;
+  if (statistics.check) json["check"] = check_json(*statistics.check);
+  json["bytes"] = {{"sorter", statistics.sorter_bytes}, {"peak_rss", peak_resident_memory(RUSAGE_SELF)}};
+  json["threads"] = sort.threads;
+  json["prepare"] = prepare_json(statistics.mesh);
   json["version"] = TETRAVOX_VERSION;
   return dump(json);
 }

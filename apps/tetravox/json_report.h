@@ -5,6 +5,7 @@
 #include "tetravox/dataset.h"
 #include "tetravox/mesh.h"
 #include "tetravox/render.h"
+#include "tetravox/visibility.h"
 
 #include <array>
 #include <cstdint>
@@ -49,6 +50,23 @@ struct PictureStatistics {
 double median_frame_seconds(const PictureStatistics& statistics);
 
 std::string format_statistics(const PictureStatistics& statistics);
+
+/// What `tetravox order --statistics` writes.
+struct OrderStatistics {
+  double read_seconds = 0, prepare_seconds = 0;
+  double recover_seconds = 0;        ///< of the sorter, before it sorts
+  std::vector<double> sort_seconds;  ///< of each sort, at least one
+  SortMethod method = SortMethod::kXmpvo;
+  SortStatistics sort;               ///< of the last one
+  std::optional<OrderReport> check;  ///< where asked for
+  PrepareReport mesh;
+  std::uint64_t sorter_bytes = 0;
+};
+
+/// Median of the sorts after the first, or the first where it is the only one.
+double median_sort_seconds(const OrderStatistics& statistics);
+
+std::string format_statistics(const OrderStatistics& statistics);
 
 /// Memory that rendering needs, for `info`.
 struct MemoryPlan {

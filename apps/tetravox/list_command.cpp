@@ -9,6 +9,7 @@
 #include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
 #include "tetravox/transfer_function.h"
+#include "tetravox/visibility.h"
 
 #include <cstddef>
 #include <iostream>
@@ -62,6 +63,9 @@ void run_list(const ListOptions& options) {
       break;
     case ListOptions::Topic::kDevices:
       std::cout << with_title("Devices for --backend gl (--gl-device):", device_names());
+      break;
+    case ListOptions::Topic::kSorts:
+      std::cout << with_title("Orders of cells (tetravox order --sort):", sort_method_names());
       break;
     case ListOptions::Topic::kMethods:
       std::cout << with_title("Sources (--source):", source_names())

@@ -5,6 +5,7 @@
 #include "apps/tetravox/options_effects.h"
 #include "apps/tetravox/options_histogram.h"
 #include "apps/tetravox/options_multidimensional.h"
+#include "apps/tetravox/options_order.h"
 #include "apps/tetravox/text.h"
 
 #include "tetravox/error.h"
@@ -45,6 +46,7 @@ constexpr char kExamples[] = R"(Examples:
   tetravox render head.nii.gz --variables gradient  where materials meet: opacity by value and gradient
   tetravox render engine.vtu --array density --color-array pressure
   tetravox histogram engine.vtu                     how much volume each value takes: engine-histogram.png
+  tetravox order engine.vtu --check                 cells back to front, for renderers that project them
   tetravox list presets                             names for --transfer-function
 )";
 
@@ -196,9 +198,14 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(options.repeat, integer(1, kLargestRepeat)));
 }
 
+void require_consistent(const CameraOptions& camera) {
+  if (camera.view_angle && camera.parallel_scale)
+    throw UsageError("give --camera-view-angle (perspective) or --camera-parallel-scale (orthographic), not both");
+}
+
 ListOptions::Topic topic_from_name(const std::string& text) {
   return static_cast<ListOptions::Topic>(
-      parse_choice("list", text, {"presets", "readers", "builtins", "methods", "environments", "devices"}));
+      parse_choice("list", text, {"presets", "readers", "builtins", "methods", "environments", "devices", "sorts"}));
 }
 
 /// Usage lines in the order in which people type.
@@ -225,10 +232,12 @@ struct Parser {
   CLI::App* render = nullptr;
   CLI::App* info = nullptr;
   CLI::App* histogram = nullptr;
+  CLI::App* order = nullptr;
   CLI::App* list = nullptr;
   RenderOptions render_options;
   InfoOptions info_options;
   HistogramCommandOptions histogram_options;
+  OrderCommandOptions order_options;
   std::string topic;
 
   Parser();
@@ -275,8 +284,14 @@ Parser::Parser() {
   add_raw_layout(*histogram, histogram_options.input);
   add_histogram(*histogram, histogram_options);
 
-  list = add_command(app, "list", "List presets, readers, builtins, methods, environments or devices");
-  list->add_option("TOPIC", topic, "presets, readers, builtins, methods, environments or devices")->type_name("");
+  order = add_command(app, "order", "Sort the cells of a mesh by visibility, and check the order");
+  add_input(*order, order_options.input);
+  add_camera(*order, order_options.camera);
+  add_order(*order, order_options);
+
+  list = add_command(app, "list", "List presets, readers, builtins, methods, environments, devices or sorts");
+  list->add_option("TOPIC", topic, "presets, readers, builtins, methods, environments, devices or sorts")
+      ->type_name("");
 }
 
 /// The first argument that nothing wanted, with the option that was probably meant.
@@ -290,7 +305,7 @@ void Parser::refuse_unknown(const CLI::App& command) const {
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   const bool is_main = &command == &app;
-  if (is_main) known = {"render", "info", "histogram", "list", "--help", "--version"};
+  if (is_main) known = {"render", "info", "histogram", "order", "list", "--help", "--version"};
   const std::string closest = closest_word(word, known);
   std::string message = (word[0] == '-' ? "unknown option '"
                          : is_main      ? "unknown command '"
@@ -304,7 +319,7 @@ void Parser::refuse_unknown(const CLI::App& command) const {
 }
 
 CommandLine Parser::result() {
-  for (const CLI::App* command : {render, info, histogram, list})
+  for (const CLI::App* command : {render, info, histogram, order, list})
     if (command->parsed()) refuse_unknown(*command);
   refuse_unknown(app);
   const auto require_input = [](const InputOptions& input) {
@@ -314,8 +329,7 @@ CommandLine Parser::result() {
   };
   if (render->parsed()) {
     require_input(render_options.input);
-    if (render_options.camera.view_angle && render_options.camera.parallel_scale)
-      throw UsageError("give --camera-view-angle (perspective) or --camera-parallel-scale (orthographic), not both");
+    require_consistent(render_options.camera);
     require_consistent(render_options.method);
     if (render_options.is_quiet && render_options.is_verbose) throw UsageError("give --quiet or --verbose, not both");
     return render_options;
@@ -328,11 +342,16 @@ CommandLine Parser::result() {
     require_input(histogram_options.input);
     return histogram_options;
   }
+  if (order->parsed()) {
+    require_input(order_options.input);
+    require_consistent(order_options.camera);
+    return order_options;
+  }
   if (list->parsed()) {
-    if (topic.empty()) throw UsageError("list what? presets, readers, builtins, methods or environments");
+    if (topic.empty()) throw UsageError("list what? presets, readers, builtins, methods, environments or sorts");
     return ListOptions{topic_from_name(topic)};
   }
-  throw UsageError("name a command: render, info, histogram or list");
+  throw UsageError("name a command: render, info, histogram, order or list");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "apps/tetravox/option_values.h"
 
 #include "tetravox/scene.h"
+#include "tetravox/visibility.h"
 
 #include <array>
 #include <cstddef>
@@ -16,7 +17,7 @@
 
 namespace tetravox::tool {
 
-/// What is read: shared by `render`, `info` and `histogram`.
+/// What is read: shared by `render`, `info`, `histogram` and `order`.
 struct InputOptions {
   std::string input;
   std::string array;
@@ -160,8 +161,21 @@ struct HistogramCommandOptions {
   std::optional<ValueRange> range, other_range;
 };
 
+struct OrderCommandOptions {
+  InputOptions input;
+  CameraOptions camera;
+  SortMethod method = SortMethod::kXmpvo;
+  SortDirection direction = SortDirection::kBackToFront;
+  bool use_check = false;
+  std::optional<std::array<int, 2>> resolution;  ///< rays of the check
+  int threads = 0;
+  int repeat = 1;
+  std::string output;  ///< empty: none
+  std::string statistics;
+};
+
 struct ListOptions {
-  enum class Topic { kPresets, kReaders, kBuiltins, kMethods, kEnvironments, kDevices };
+  enum class Topic { kPresets, kReaders, kBuiltins, kMethods, kEnvironments, kDevices, kSorts };
   Topic topic = Topic::kPresets;
 };
 
@@ -170,7 +184,8 @@ struct TextOptions {
   std::string text;
 };
 
-using CommandLine = std::variant<TextOptions, RenderOptions, InfoOptions, HistogramCommandOptions, ListOptions>;
+using CommandLine =
+    std::variant<TextOptions, RenderOptions, InfoOptions, HistogramCommandOptions, OrderCommandOptions, ListOptions>;
 
 /// @throws UsageError that names the option.
 CommandLine parse_command_line(int argc, const char* const* argv);

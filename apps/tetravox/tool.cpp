@@ -27,6 +27,7 @@ int run_command(const CommandLine& command_line) {
   if (const auto* options = std::get_if<RenderOptions>(&command_line)) run_render(*options);
   if (const auto* options = std::get_if<InfoOptions>(&command_line)) run_info(*options);
   if (const auto* options = std::get_if<HistogramCommandOptions>(&command_line)) run_histogram(*options);
+  if (const auto* options = std::get_if<OrderCommandOptions>(&command_line)) run_order(*options);
   if (const auto* options = std::get_if<ListOptions>(&command_line)) run_list(*options);
   if (!std::cout.flush()) throw Error(ErrorCode::kCannotWrite, "cannot write to standard output");
   return kDone;
@@ -35,7 +36,8 @@ int run_command(const CommandLine& command_line) {
 /// Where to read on after a wrong command line.
 std::string help_hint(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
-  const bool is_command = command == "render" || command == "info" || command == "histogram" || command == "list";
+  const bool is_command =
+      command == "render" || command == "info" || command == "histogram" || command == "order" || command == "list";
   return " (see tetravox " + (is_command ? command + " " : "") + "--help)";
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The command line tool: `tetravox render | info | histogram | list`.
+/// The command line tool: `tetravox render | info | histogram | order | list`.
 
 namespace tetravox::tool {
 
