@@ -69,6 +69,7 @@ void run_list(const ListOptions& options) {
       break;
     case ListOptions::Topic::kMethods:
       std::cout << with_title("Sources (--source):", source_names())
+                << with_title("Orders of projected cells (--sort):", cell_sort_names())
                 << with_title("Classifications (--classification):", classification_names())
                 << with_title("Integrators (--integrator):", integrator_names())
                 << with_title("Filters of grids (--filter):", filter_names())

@@ -165,6 +165,12 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.gl_device, integer(0, kMostDevices)));
   add(app, "--source", "NAME", "Where segments come from (tetravox list methods)",
       store(method.source, named(source_from_name)));
+  add(app, "--sort", "NAME", "project, vicp: order of cells, xmpvo (default) or another (tetravox list methods)",
+      store(method.sort, named(cell_sort_from_name)));
+  add(app, "--decomposition", "cpu|gpu", "project: where cells become triangles (default: cpu)",
+      store(method.decomposition, named(decomposition_from_name)));
+  add(app, "--mesh-transfer", "order|cells", "vicp: what is sent for a frame (default: order, the mesh stays)",
+      store(method.transfer, named(mesh_transfer_from_name)));
   add(app, "--integrator", "NAME", "What turns a segment into colour (tetravox list methods)",
       store(method.integrator, named(integrator_from_name)));
   add(app, "--classification", "NAME", "Where the function is applied: preintegrated (default), post, pre",

@@ -76,6 +76,9 @@ struct MethodOptions {
   bool use_gl = false;
   std::optional<int> gl_device;
   std::optional<Source> source;
+  std::optional<CellSort> sort;
+  std::optional<Decomposition> decomposition;
+  std::optional<MeshTransfer> transfer;
   std::optional<Classification> classification;
   std::optional<Integrator> integrator;
   std::optional<Filter> filter;

@@ -22,6 +22,10 @@ struct WalkBlock {
 struct TablesBlock {
 #include "src/gl/shaders/integrators/tables_block.glsl"
 };
+struct ProjectionBlock {
+#include "src/gl/shaders/projection_block.glsl"
+};
+static_assert(sizeof(ProjectionBlock) == 4 * 16);
 static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 6 * 16);
 
 }  // namespace tetravox::gl

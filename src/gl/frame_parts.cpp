@@ -46,9 +46,11 @@ void FrameParts::begin(const Limits& limits, const scene::CameraFrame& camera, d
   };
   upload(rays.column_offset, rays.column_slope, settings.width, columns_);
   upload(rays.row_offset, rays.row_slope, settings.height, rows_);
-  FrameBlock block{};
+  FrameBlock& block = members_;
+  block = {};
   block.width = settings.width;
   block.height = settings.height;
+  block.row_end = settings.height;
   block.z_near = rays.grid.z_near;
   block.world_per_local = rays.grid.world_per_local;
   block.eye_x = static_cast<float>(camera.eye[0]);
@@ -63,6 +65,13 @@ void FrameParts::begin(const Limits& limits, const scene::CameraFrame& camera, d
   rows_.bind(kRowUnit);
   picture_.resize(GL_RGBA32F, settings.width, settings.height);
   glViewport(0, 0, settings.width, settings.height);
+}
+
+void FrameParts::choose_rows(int begin, int end) {
+  members_.row_begin = begin;
+  members_.row_end = end;
+  block_.upload(&members_, sizeof(members_));
+  block_.bind_uniform(kFrameBinding);
 }
 
 void FrameParts::download(Image& image) const {

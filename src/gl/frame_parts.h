@@ -26,12 +26,15 @@ class FrameParts {
   /// @throws Error (kUnsupported) where the picture is too large for the device.
   void begin(const Limits& limits, const scene::CameraFrame& camera, double world_per_local,
              const RenderSettings& settings);
+  /// Rows [begin, end) are what the next passes draw.
+  void choose_rows(int begin, int end);
   /// Reads the picture back.
   void download(Image& image) const;
   const Picture& picture() const { return picture_; }
   std::uint64_t bytes() const;
 
  private:
+  FrameBlock members_;
   Buffer block_;
   BufferTexture columns_, rows_;
   Picture picture_;

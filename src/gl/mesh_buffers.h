@@ -9,6 +9,7 @@
 #include "tetravox/mesh.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tetravox::gl {
@@ -21,6 +22,8 @@ class MeshBuffers {
 
   /// Moves the vertices into the camera's frame, and finds the cells around the eye, which may move it.
   scene::CameraFrame see(const Camera& camera, int width, int height);
+  /// Of the last `see`: [vertices][4] camera frame, stored scalar.
+  std::span<const float> seen() const { return seen_; }
   void bind() const;
   /// Vertices, faces and the first of those around the eye.
   WalkBlock describe() const;

@@ -2,6 +2,7 @@
 #include "src/gl/frame_renderers.h"
 #include "src/gl/integrator_tables.h"
 #include "src/gl/mesh_buffers.h"
+#include "src/gl/projector.h"
 #include "src/gl/walk_passes.h"
 #include "src/support/threads.h"
 #include "tetravox/error.h"
@@ -54,9 +55,14 @@ class MeshRenderer final : public scene::FrameRenderer {
     device.frame.begin(context_->limits(), frame, mesh_.world_per_local, settings);
     device.mesh.bind();
     device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance);
-    device.walk.draw({device.mesh.describe(), device.frame, settings, mesh_.association == Association::kCell,
-                      context_->limits(), context.progress},
-                     statistics);
+    if (settings.source.value_or(Source::kWalk) == Source::kWalk)
+      device.walk.draw({device.mesh.describe(), device.frame, settings, mesh_.association == Association::kCell,
+                        context_->limits(), context.progress},
+                       statistics);
+    else
+      device.projector.draw(
+          {camera, frame, device.mesh.seen(), device.frame, settings, context_->limits(), context.progress},
+          statistics);
     device.frame.download(image);
     context_->require_no_error("drawing");
     note_backend(*context_, statistics);
@@ -66,19 +72,21 @@ class MeshRenderer final : public scene::FrameRenderer {
     return static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height) * 4 * sizeof(float);
   }
   std::uint64_t bytes() const override {
-    return device_->mesh.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->walk.bytes();
+    return device_->mesh.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->walk.bytes() +
+           device_->projector.bytes();
   }
-  std::vector<Source> sources() const override { return {Source::kWalk}; }
+  std::vector<Source> sources() const override { return {Source::kWalk, Source::kProject, Source::kVicp}; }
   double diagonal() const override { return scene::diagonal_of(mesh_.bounds); }
 
  private:
   /// What lives on the device, and dies with the context current.
   struct Device {
-    Device(const PreparedMesh& prepared, const Limits& limits) : mesh(prepared, limits) {}
+    Device(const PreparedMesh& prepared, const Limits& limits) : mesh(prepared, limits), projector(prepared) {}
     MeshBuffers mesh;
     FrameParts frame;
     IntegratorTables tables;
     WalkPasses walk;
+    Projector projector;
   };
 
   const PreparedMesh& mesh_;

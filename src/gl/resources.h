@@ -47,6 +47,8 @@ class Buffer {
  public:
   /// Makes the buffer hold these bytes, at its beginning.
   void upload(const void* data, std::size_t bytes);
+  /// The same from an offset on; there must be room.
+  void write(std::size_t offset, const void* data, std::size_t bytes) const;
   /// Makes room; what it held is lost where it must grow.
   void reserve(std::size_t bytes);
   void clear_to_zero(std::size_t bytes) const;

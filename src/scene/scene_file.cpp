@@ -94,11 +94,24 @@ void read_image(const JsonPlace& place, Scene& scene) {
   }
 }
 
+ProjectionSettings read_projection(const JsonPlace& place) {
+  place.require_keys({"sort", "decomposition", "transfer"});
+  ProjectionSettings settings;
+  const auto read = [&](const char* key, auto& value, const auto& from_name) {
+    if (const auto found = place.find(key)) value = at_place(*found, [&] { return from_name(found->string()); });
+  };
+  read("sort", settings.sort, cell_sort_from_name);
+  read("decomposition", settings.decomposition, decomposition_from_name);
+  read("transfer", settings.transfer, mesh_transfer_from_name);
+  return settings;
+}
+
 void read_render(const JsonPlace& place, RenderSettings& settings) {
-  place.require_keys({"source", "integrator", "filter", "tolerance", "samples", "samples_per_voxel", "opacity_weight",
-                      "opacity_weight_scale", "early_ray_termination"});
+  place.require_keys({"source", "projection", "integrator", "filter", "tolerance", "samples", "samples_per_voxel",
+                      "opacity_weight", "opacity_weight_scale", "early_ray_termination"});
   if (const auto source = place.find("source"))
     settings.source = at_place(*source, [&] { return source_from_name(source->string()); });
+  if (const auto projection = place.find("projection")) settings.projection = read_projection(*projection);
   if (const auto integrator = place.find("integrator"))
     settings.integrator = at_place(*integrator, [&] { return integrator_from_name(integrator->string()); });
   if (const auto filter = place.find("filter"))
@@ -180,9 +193,18 @@ Json write_camera(const Camera& camera) {
   return json;
 }
 
+Json write_projection(const ProjectionSettings& settings) {
+  Json json;
+  json["sort"] = name_of(settings.sort);
+  json["decomposition"] = name_of(settings.decomposition);
+  json["transfer"] = name_of(settings.transfer);
+  return json;
+}
+
 Json write_render(const RenderSettings& settings) {
   Json json;
   if (settings.source) json["source"] = name_of(*settings.source);
+  if (settings.projection != ProjectionSettings{}) json["projection"] = write_projection(settings.projection);
   json["integrator"] = name_of(settings.integrator);
   if (settings.filter != Filter{}) json["filter"] = name_of(settings.filter);
   json["tolerance"] = settings.tolerance;

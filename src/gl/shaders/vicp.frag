@@ -1,0 +1,9 @@
+// View-independent cell projection (Weiler, Kraus, Merz, Ertl 2003): the ray of the pixel through the cell.
+
+#include "projection.glsl"
+#include "tetrahedron.glsl"
+#include "projected_fragment.glsl"
+
+flat in vec4 corners[4];
+
+void main() { finish(pass_tetrahedron(ray_of(ivec2(gl_FragCoord.xy)), corners)); }
