@@ -181,6 +181,23 @@ bool is_out_of_sight(const std::array<const float*, 4>& seen, const ScreenView& 
 
 namespace {
 
+ProjectedVertex vertex_at(std::int32_t x, std::int32_t y, const Carried& carried, const ScreenView& view) {
+  const auto to_clip = [&](std::int32_t at, int size) {
+    return static_cast<float>(2.0 * at / (static_cast<double>(view.subpixels) * size) - 1.0);
+  };
+  return {to_clip(x, view.frame.width), to_clip(y, view.frame.height), carried};
+}
+
+void extend(std::vector<ProjectedRange>& ranges, const ProjectedRange& range) {
+  if (range.count == 0) return;
+  const bool continues = !ranges.empty() && ranges.back().is_at_eye == range.is_at_eye &&
+                         ranges.back().first + ranges.back().count == range.first;
+  if (continues)
+    ranges.back().count += range.count;
+  else
+    ranges.push_back(range);
+}
+
 /// What one piece of the order comes to.
 struct Piece {
   std::vector<ProjectedRange> ranges;  ///< indices counted from the piece's first
@@ -200,13 +217,7 @@ class Decomposer {
         view_(view),
         projection_(projection),
         width_(view.frame.width * view.subpixels),
-        height_(view.frame.height * view.subpixels),
-        to_clip_x_(2.0f / static_cast<float>(width_)),
-        to_clip_y_(2.0f / static_cast<float>(height_)) {}
-
-  ProjectedVertex vertex_at(std::int32_t x, std::int32_t y, const Carried& carried) const {
-    return {static_cast<float>(x) * to_clip_x_ - 1.0f, static_cast<float>(y) * to_clip_y_ - 1.0f, carried};
-  }
+        height_(view.frame.height * view.subpixels) {}
 
   Piece decompose(std::size_t begin, std::size_t end, std::vector<std::uint32_t>& indices) const {
     Piece piece;
@@ -218,10 +229,11 @@ class Decomposer {
       if (std::ranges::any_of(vertices, [](const ScreenVertex* v) { return v->x == kOffScreen; })) {
         if (is_out_of_sight({at(ids[0]), at(ids[1]), at(ids[2]), at(ids[3])}, view_)) continue;
         ++piece.cells_at_eye;
-        extend(piece, true, place, 1);
+        extend(piece.ranges, {true, place, 1});
       } else if (!is_beside_picture(vertices)) {
         const std::size_t first = indices.size();
-        extend(piece, false, first, add_triangles(place, ids, vertices, indices));
+        const std::size_t count = add_triangles(place, ids, vertices, indices);
+        extend(piece.ranges, {false, first, count});
       } else {
         continue;
       }
@@ -245,20 +257,11 @@ class Decomposer {
     ProjectedCell cell = decompose_cell(vertices, view_.frame.is_orthographic);
     const std::size_t thick = projection_.vertices.size() + place;
     if (!cell_scalars_.empty()) cell.thick.front = cell_scalars_[order_[place]];
-    projection_.drawn[thick] = vertex_at(cell.x, cell.y, cell.thick);
+    projection_.drawn[thick] = vertex_at(cell.x, cell.y, cell.thick, view_);
     const std::size_t count = 3 * static_cast<std::size_t>(cell.triangle_count);
     for (std::size_t k = 0; k < count; ++k)
       indices.push_back(cell.corners[k] == 4 ? static_cast<std::uint32_t>(thick) : ids[cell.corners[k]]);
     return count;
-  }
-
-  static void extend(Piece& piece, bool is_at_eye, std::size_t first, std::size_t count) {
-    if (count == 0) return;
-    if (!piece.ranges.empty() && piece.ranges.back().is_at_eye == is_at_eye &&
-        piece.ranges.back().first + piece.ranges.back().count == first)
-      piece.ranges.back().count += count;
-    else
-      piece.ranges.push_back({is_at_eye, first, count});
   }
 
   std::span<const float> seen_;
@@ -268,26 +271,28 @@ class Decomposer {
   const ScreenView& view_;
   Projection& projection_;
   std::int32_t width_, height_;
-  float to_clip_x_, to_clip_y_;
 };
 
 }  // namespace
 
-void decompose(std::span<const float> seen, std::span<const mesh::CellVertices> cells,
-               std::span<const float> cell_scalars, std::span<const std::uint32_t> order, const ScreenView& view,
-               Projection& projection) {
+void project_mesh(std::span<const float> seen, std::size_t cell_count, const ScreenView& view, Projection& projection) {
   project_vertices(seen, view, projection.vertices);
   const std::size_t vertex_count = projection.vertices.size();
-  projection.drawn.resize(vertex_count + order.size());
-  const Decomposer decomposer(seen, cells, cell_scalars, order, view, projection);
+  projection.drawn.resize(vertex_count + cell_count);
   support::parallel_chunks(vertex_count, 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ScreenVertex& v = projection.vertices[i];
       const auto carried = static_cast<float>(view.frame.is_orthographic ? v.scalar : v.scalar * v.depth);
-      projection.drawn[i] = decomposer.vertex_at(v.x, v.y, {static_cast<float>(v.depth), 0.0f, carried, carried});
+      projection.drawn[i] = vertex_at(v.x, v.y, {static_cast<float>(v.depth), 0.0f, carried, carried}, view);
     }
   });
+}
 
+void decompose(std::span<const float> seen, std::span<const mesh::CellVertices> cells,
+               std::span<const float> cell_scalars, std::span<const std::uint32_t> order, const ScreenView& view,
+               Projection& projection) {
+  project_mesh(seen, order.size(), view, projection);
+  const Decomposer decomposer(seen, cells, cell_scalars, order, view, projection);
   const std::size_t count = (order.size() + kChunk - 1) / kChunk;
   projection.indices.resize(count);
   std::vector<Piece> pieces(count);
@@ -304,17 +309,36 @@ void decompose(std::span<const float> seen, std::span<const mesh::CellVertices> 
   for (std::size_t i = 0; i < count; ++i) {
     for (ProjectedRange range : pieces[i].ranges) {
       if (!range.is_at_eye) range.first += first;
-      auto& ranges = projection.ranges;
-      const bool continues = !ranges.empty() && ranges.back().is_at_eye == range.is_at_eye &&
-                             ranges.back().first + ranges.back().count == range.first;
-      if (continues)
-        ranges.back().count += range.count;
-      else
-        ranges.push_back(range);
+      extend(projection.ranges, range);
     }
     first += projection.indices[i].size();
     projection.cells += pieces[i].cells;
     projection.cells_at_eye += pieces[i].cells_at_eye;
+  }
+}
+
+void find_ranges(std::span<const float> seen, std::span<const mesh::CellVertices> cells,
+                 std::span<const std::uint32_t> order, const ScreenView& view, Projection& projection) {
+  projection.ranges.clear();
+  projection.cells = order.size();
+  projection.cells_at_eye = 0;
+  const auto is_off_screen = [&](std::uint32_t id) { return projection.vertices[id].x == kOffScreen; };
+  if (std::ranges::none_of(projection.vertices, [](const ScreenVertex& v) { return v.x == kOffScreen; })) {
+    extend(projection.ranges, {false, 0, 12 * order.size()});
+    return;
+  }
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    const mesh::CellVertices& ids = cells[order[place]];
+    if (ids[0] == kNoCell) continue;
+    if (std::ranges::none_of(ids, is_off_screen)) {
+      extend(projection.ranges, {false, 12 * place, 12});
+      continue;
+    }
+    std::array<const float*, 4> corners{};
+    for (int k = 0; k < 4; ++k) corners[k] = seen.data() + 4 * std::size_t{ids[k]};
+    if (is_out_of_sight(corners, view)) continue;
+    ++projection.cells_at_eye;
+    extend(projection.ranges, {true, place, 1});
   }
 }
 

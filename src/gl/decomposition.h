@@ -31,10 +31,12 @@ struct ScreenView {
 
 /// A vertex of the mesh in the picture.
 struct ScreenVertex {
+  // The device reads it so, too (shaders/decompose.comp).
   std::int32_t x = 0, y = 0;  ///< steps from the picture's corner, y downwards; kOffScreen: see below
   float scalar = 0.0f;
   double depth = 0.0;  ///< what is linear in the picture: of a perspective 1 / (z - eye), otherwise z
 };
+static_assert(sizeof(ScreenVertex) == 24);
 /// `ScreenVertex::x` of a vertex that is behind the eye or the near plane, or far outside the picture.
 inline constexpr std::int32_t kOffScreen = INT32_MIN;
 
@@ -84,11 +86,18 @@ struct Projection {
   std::uint64_t bytes() const;
 };
 
+/// Fills what concerns vertices of the mesh, reusing memory; makes room for the thick vertices of `cell_count` cells.
+void project_mesh(std::span<const float> seen, std::size_t cell_count, const ScreenView& view, Projection& projection);
+
 /// Fills `projection`, reusing its memory. `cell_scalars`: with cell data, otherwise empty. In parallel; the same for
 /// any number of threads.
 void decompose(std::span<const float> seen, std::span<const mesh::CellVertices> cells,
                std::span<const float> cell_scalars, std::span<const std::uint32_t> order, const ScreenView& view,
                Projection& projection);
+
+/// Fills the ranges alone, for triangles that the device makes: twelve indices a cell.
+void find_ranges(std::span<const float> seen, std::span<const mesh::CellVertices> cells,
+                 std::span<const std::uint32_t> order, const ScreenView& view, Projection& projection);
 
 /// Whether the cell is certainly outside the picture or behind the eye. For cells with vertices off the screen.
 bool is_out_of_sight(const std::array<const float*, 4>& seen, const ScreenView& view);

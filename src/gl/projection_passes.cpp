@@ -2,16 +2,20 @@
 
 #include "src/gl/integrator_tables.h"
 #include "src/support/threads.h"
+#include "tetravox/error.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <utility>
 
 namespace tetravox::gl {
 namespace {
 
-constexpr GLuint kProjectionBinding = 3;                                                       // uniform block
-constexpr GLuint kVertexUnit = 6, kCellScalarUnit = 9, kCellVertexUnit = 10, kOrderUnit = 11;  // textures
+constexpr GLuint kProjectionBinding = 3;                                                     // uniform block
+constexpr GLuint kVertexUnit = 6, kCellScalarUnit = 9, kCellVertexUnit = 7, kOrderUnit = 8;  // textures
+
+constexpr GLuint kDrawnBinding = 0, kIndexBinding = 1;  // storage blocks
 
 void add_defines(const ProjectionShader& shader, std::vector<ShaderRecipe>& stages) {
   for (ShaderRecipe& stage : stages) {
@@ -46,6 +50,12 @@ std::vector<ShaderRecipe> recipe_of_vicp(const ProjectionShader& shader) {
   return stages;
 }
 
+ShaderRecipe recipe_of_decomposition(bool has_cell_data) {
+  ShaderRecipe recipe{ShaderStage::kCompute, "decompose.comp", {}, {}};
+  if (has_cell_data) recipe.defines.emplace_back("CELL_DATA", "1");
+  return recipe;
+}
+
 const ProgramName& ProjectionPasses::find_program(const std::string& key, const std::vector<ShaderRecipe>& recipes) {
   const auto found = programs_.find(key);
   if (found != programs_.end()) return found->second;
@@ -67,6 +77,36 @@ void ProjectionPasses::send(const Projection& projection) {
     indices_.write(offset, list.data(), list.size() * sizeof(std::uint32_t));
     offset += list.size() * sizeof(std::uint32_t);
   }
+  bind_triangles();
+}
+
+void ProjectionPasses::decompose(const Projection& projection, std::size_t cell_count, bool has_cell_data,
+                                 const Limits& limits, ProjectionBlock block) {
+  const std::size_t vertex_count = projection.vertices.size();
+  const std::uint64_t vertex_bytes = (vertex_count + cell_count) * sizeof(ProjectedVertex);
+  const std::uint64_t index_bytes = 12 * cell_count * sizeof(std::uint32_t);
+  if (std::max(vertex_bytes, index_bytes) > limits.storage_bytes || 3 * vertex_count > limits.buffer_texels)
+    throw Error(ErrorCode::kUnsupported, "OpenGL: this device does not cut meshes of " + std::to_string(cell_count) +
+                                             " tetrahedra into triangles: use --decomposition cpu");
+  vertices_.reserve(vertex_bytes);
+  vertices_.write(0, projection.drawn.data(), vertex_count * sizeof(ProjectedVertex));
+  indices_.reserve(index_bytes);
+  screen_vertices_.upload(GL_RG32UI, projection.vertices.data(), vertex_count * sizeof(ScreenVertex));
+  screen_vertices_.bind(kVertexUnit);
+  block.first_thick = static_cast<uint>(vertex_count);
+  block.node_count = static_cast<uint>(cell_count);
+  set(block);
+  vertices_.bind_storage(kDrawnBinding);
+  indices_.bind_storage(kIndexBinding);
+  glUseProgram(
+      find_program(has_cell_data ? "decompose cells" : "decompose", {recipe_of_decomposition(has_cell_data)}).get());
+  constexpr std::size_t kGroup = 64;
+  glDispatchCompute(static_cast<GLuint>((cell_count + kGroup - 1) / kGroup), 1, 1);
+  glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT);
+  bind_triangles();
+}
+
+void ProjectionPasses::bind_triangles() {
   if (!triangles_) {
     GLuint name = 0;
     glCreateVertexArrays(1, &name);
@@ -145,7 +185,7 @@ void ProjectionPasses::draw_faces(const ProjectionShader& shader, std::size_t fi
 }
 
 std::uint64_t ProjectionPasses::bytes() const {
-  std::uint64_t sum = block_.bytes() + vertices_.bytes() + indices_.bytes();
+  std::uint64_t sum = block_.bytes() + vertices_.bytes() + indices_.bytes() + screen_vertices_.bytes();
   for (const BufferTexture* texture :
        {&kept_vertices_, &kept_cells_, &kept_scalars_, &sent_vertices_, &sent_cells_, &sent_scalars_, &order_})
     sum += texture->bytes();

@@ -30,6 +30,7 @@ struct ProjectionShader {
 /// The shader programs of the sources `project` and `vicp`.
 std::vector<ShaderRecipe> recipe_of_projection(const ProjectionShader& shader);
 std::vector<ShaderRecipe> recipe_of_vicp(const ProjectionShader& shader);
+ShaderRecipe recipe_of_decomposition(bool has_cell_data);
 
 /// Draws into the framebuffer that is bound, blending as is set up. With the context current.
 class ProjectionPasses {
@@ -39,6 +40,10 @@ class ProjectionPasses {
 
   /// Sends what `draw_triangles` draws.
   void send(const Projection& projection);
+  /// The same, with triangles made on the device: twelve indices a cell. The mesh and the order have been sent (`keep`,
+  /// `send`). `block` is for the draws to come. @throws Error (kUnsupported) where the device cannot hold them.
+  void decompose(const Projection& projection, std::size_t cell_count, bool has_cell_data, const Limits& limits,
+                 ProjectionBlock block);
   void draw_triangles(const ProjectionShader& shader, std::size_t first_index, std::size_t count);
 
   /// Keeps vertices and cells of the mesh in its own frame.
@@ -54,12 +59,14 @@ class ProjectionPasses {
   std::uint64_t bytes() const;
 
  private:
+  void bind_triangles();
   const ProgramName& find_program(const std::string& key, const std::vector<ShaderRecipe>& recipes);
 
   std::map<std::string, ProgramName> programs_;
   VertexArrayName triangles_, no_attributes_;
   Buffer block_, vertices_, indices_;
   bool has_mesh_ = false;
+  BufferTexture screen_vertices_;
   BufferTexture kept_vertices_, kept_cells_, kept_scalars_, sent_vertices_, sent_cells_, sent_scalars_, order_;
   std::vector<mesh::CellVertices> ordered_cells_;
   std::vector<float> ordered_scalars_;

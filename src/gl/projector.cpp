@@ -69,11 +69,19 @@ void Projector::prepare_triangles(const ProjectionFrame& frame, std::span<const 
   const support::Timer timer;
   const scene::CameraFrame& seen_by = frame.seen_by;
   const ScreenView view{seen_by, kSubpixels, static_cast<float>(seen_by.eye[2])};
-  decompose(frame.seen, cells_, mesh_.cell_scalars, order, view, projection_);
+  if (frame.settings.projection.decomposition == Decomposition::kGpu) {
+    project_mesh(frame.seen, order.size(), view, projection_);
+    find_ranges(frame.seen, cells_, order, view, projection_);
+    passes_.keep(mesh_, cells_);
+    passes_.send(order);
+    passes_.decompose(projection_, order.size(), mesh_.association == Association::kCell, frame.limits, block_);
+  } else {
+    decompose(frame.seen, cells_, mesh_.cell_scalars, order, view, projection_);
+    passes_.send(projection_);
+  }
   statistics.cells = projection_.cells;
   statistics.cells_at_eye = projection_.cells_at_eye;
   statistics.decompose_seconds = timer.seconds();
-  passes_.send(projection_);
   if (projection_.cells_at_eye > 0) prepare_faces(frame, order, statistics);
 }
 

@@ -4,8 +4,9 @@
 #include "mesh_geometry.glsl"
 #include "projected_segment.glsl"
 
-// Nothing (length 0) where the ray misses the cell.
-ProjectedSegment pass_tetrahedron(Ray ray, vec4 corners[4]) {
+// Nothing (length 0) where the ray misses the cell, or enters it through another face than the one opposite corner
+// `entered`: so each pixel is drawn once, by the face that the ray really enters through. -1: any.
+ProjectedSegment pass_tetrahedron(Ray ray, vec4 corners[4], int entered) {
   vec2 at[4];
   for (int k = 0; k < 4; ++k) at[k] = shear(ray, corners[k]);
   float p01 = edge_product(at[0], at[1]), p02 = edge_product(at[0], at[2]), p03 = edge_product(at[0], at[3]);
@@ -21,11 +22,15 @@ ProjectedSegment pass_tetrahedron(Ray ray, vec4 corners[4]) {
   vec4 scalar = vec4(corners[0].w, corners[1].w, corners[2].w, corners[3].w);
 
   vec4 first = vec4(0.0), last = vec4(0.0);
-  int count = 0;
+  int count = 0, first_face = 0, last_face = 0;
   for (int k = 0; k < 4; ++k) {
     if (!passes[k]) continue;
-    if (count == 0) first = weights[k];
+    if (count == 0) {
+      first = weights[k];
+      first_face = k;
+    }
     last = weights[k];
+    last_face = k;
     ++count;
   }
   float first_total = first.x + first.y + first.z + first.w, last_total = last.x + last.y + last.z + last.w;
@@ -34,6 +39,7 @@ ProjectedSegment pass_tetrahedron(Ray ray, vec4 corners[4]) {
   float z_first = dot(first, z) / first_total, z_last = dot(last, z) / last_total;
   float scalar_first = dot(first, scalar) / first_total, scalar_last = dot(last, scalar) / last_total;
   bool is_turned = z_last < z_first;
+  if (entered >= 0 && entered != (is_turned ? last_face : first_face)) return passed;
   passed.z_front = is_turned ? z_last : z_first;
   float z_back = is_turned ? z_first : z_last;
   passed.scalar_front = is_turned ? scalar_last : scalar_first;

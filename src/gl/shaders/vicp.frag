@@ -5,5 +5,6 @@
 #include "projected_fragment.glsl"
 
 flat in vec4 corners[4];
+flat in int entered_face;
 
-void main() { finish(pass_tetrahedron(ray_of(ivec2(gl_FragCoord.xy)), corners)); }
+void main() { finish(pass_tetrahedron(ray_of(ivec2(gl_FragCoord.xy)), corners, entered_face)); }

@@ -1,14 +1,15 @@
-// The source `vicp`: faces of cells that look at the eye, twelve vertices a cell. A cell that holds the eye has none:
+// The source `vicp`: faces of cells that may look at the eye, twelve vertices a cell. A cell that holds the eye has none:
 // it covers the whole picture.
 
 #include "projection.glsl"
 
 layout(binding = 6) uniform samplerBuffer vertices;        // [vertices] camera frame or mesh's, stored scalar
 layout(binding = 9) uniform samplerBuffer cell_scalars;    // [cells], with cell data
-layout(binding = 10) uniform usamplerBuffer cell_vertices; // [cells], as they are or in order
-layout(binding = 11) uniform usamplerBuffer order;         // [cells]
+layout(binding = 7) uniform usamplerBuffer cell_vertices;  // [cells], as they are or in order
+layout(binding = 8) uniform usamplerBuffer order;          // [cells]
 
 flat out vec4 corners[4];  // camera frame, stored scalar
+flat out int entered_face;  // opposite which corner; -1: any
 
 const uint kUnknown = 0xFFFFFFFFu;
 
@@ -22,17 +23,37 @@ vec3 to_eye(vec3 p) {
   return frame.is_orthographic != 0 ? vec3(0.0, 0.0, -1.0) : vec3(frame.eye_x, frame.eye_y, frame.eye_z) - p;
 }
 
-// 1 where the eye is on the same side of the face opposite `k` as the corner there, -1 where it is on the other side.
-int side_of_eye(int k) {
+// How far the eye is on the side of the face opposite `k` where the corner is: below 0 the face looks at the eye, to
+// within rounding about 1e-6.
+float side_of_eye(int k) {
   vec3 a = corners[(k + 1) & 3].xyz, b = corners[(k + 2) & 3].xyz, c = corners[(k + 3) & 3].xyz;
-  vec3 normal = cross(b - a, c - a);
-  return int(sign(dot(normal, to_eye(a))) * sign(dot(normal, corners[k].xyz - a)));
+  vec3 normal = cross(b - a, c - a), arm = to_eye(a);
+  float scale = length(normal) * length(arm);
+  return scale > 0.0 ? dot(normal, arm) * sign(dot(normal, corners[k].xyz - a)) / scale : 0.0;
 }
 
+vec2 half_size() { return 0.5 * vec2(frame.width, frame.height) * frame.pixel_step; }
+
 vec4 project_place(vec3 p) {
-  vec2 half_size = 0.5 * vec2(frame.width, frame.height) * frame.pixel_step;
   float w = frame.is_orthographic != 0 ? 1.0 : p.z - frame.eye_z;
-  return vec4((p.x - frame.eye_x) / half_size.x, (frame.eye_y - p.y) / half_size.y, 0.0, w);
+  return vec4(vec2(p.x - frame.eye_x, frame.eye_y - p.y) / half_size(), 0.0, w);
+}
+
+// Corner `k` of the face, moved out so that every pixel centre in the face is covered however places are rounded
+// (Hasselgren, Akenine-Moeller, Ohlsson 2005); which of them are in it the fragment finds out.
+vec4 project_outside(int face, int k) {
+  const float kMargin = 1.0 / 64.0, kFarthest = 2.0;  // pixels
+  vec4 at[3];
+  for (int i = 0; i < 3; ++i) at[i] = project_place(corners[(face + 1 + i) & 3].xyz);
+  if (min(at[0].w, min(at[1].w, at[2].w)) <= 1e-5) return at[k];
+  vec2 size = 0.5 * vec2(frame.width, frame.height);
+  vec2 middle = at[k].xy / at[k].w * size;
+  vec2 u = at[(k + 1) % 3].xy / at[(k + 1) % 3].w * size - middle, v = at[(k + 2) % 3].xy / at[(k + 2) % 3].w * size - middle;
+  u /= max(length(u), 1e-6);
+  v /= max(length(v), 1e-6);
+  vec2 out_of_it = -(u + v) * (kMargin / max(abs(u.x * v.y - u.y * v.x), 1e-6));
+  out_of_it *= min(1.0, kFarthest / max(length(out_of_it), 1e-6));
+  return vec4((middle + out_of_it) / size * at[k].w, 0.0, at[k].w);
 }
 
 void main() {
@@ -49,10 +70,11 @@ void main() {
 #endif
   }
   bool holds_eye = frame.is_orthographic == 0;
-  for (int k = 0; k < 4; ++k) holds_eye = holds_eye && side_of_eye(k) > 0;
+  for (int k = 0; k < 4; ++k) holds_eye = holds_eye && side_of_eye(k) > 0.0;
+  entered_face = holds_eye ? -1 : face;
   if (holds_eye) {
     if (face == 0) gl_Position = vec4(corner == 1 ? 3.0 : -1.0, corner == 2 ? 3.0 : -1.0, 0.0, 1.0);
-  } else if (side_of_eye(face) < 0) {
-    gl_Position = project_place(corners[(face + 1 + corner) & 3].xyz);
+  } else if (side_of_eye(face) < 1e-5) {
+    gl_Position = project_outside(face, corner);
   }
 }

@@ -112,11 +112,7 @@ void integrate(Segment segment, inout Front front, inout vec4 sum) {
   vec4 integrals = integrate_between(before, back, segment.length);
   float nodes = abs(back.position - before.position);
   bool beyond = tables.covers_data == 0 && (is_outside(before.position) || is_outside(back.position));
-#ifdef HAS_COARSE
-  bool coarse = is_coarse(before.position) || is_coarse(back.position);
-#else
-  const bool coarse = false;
-#endif
+  bool coarse = tables.has_coarse != 0 && (is_coarse(before.position) || is_coarse(back.position));
   float weight = integrals.x * integrals.x * sum.a;
   bool is_doubtful = beyond || integrals.x > 0.25 ||
                      weight * min(1.0, nodes * tables.largest_color_slope) > tables.split_threshold;
@@ -124,17 +120,11 @@ void integrate(Segment segment, inout Front front, inout vec4 sum) {
     // By the colours that the segment really passes.
     float change = min(1.0, abs(variation_at(back.position) - variation_at(before.position)));
     is_doubtful = beyond || weight * change > tables.split_threshold;
-#ifdef HAS_COARSE
-    coarse = is_doubtful && passes_coarse(before.position, back.position);
-#endif
+    coarse = is_doubtful && tables.has_coarse != 0 && passes_coarse(before.position, back.position);
   }
-#ifdef HAS_COARSE
-  if (coarse) {
+  if (coarse)
     integrate_exactly(segment, sum);
-    return;
-  }
-#endif
-  if (is_doubtful)
+  else if (is_doubtful)
     integrate_pieces(segment.length, before, back, sum);
   else
     composite_piece(integrals.x, integrals.yzw, sum);
