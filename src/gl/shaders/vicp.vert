@@ -1,5 +1,5 @@
-// The source `vicp`: faces of cells that may look at the eye, twelve vertices a cell. A cell that holds the eye has none:
-// it covers the whole picture.
+// The source `vicp`: faces of cells that may look at the eye, twelve vertices a cell. A cell that holds the eye has none,
+// and faces that reach behind the eye cannot be moved out: these cells cover the whole picture.
 
 #include "projection.glsl"
 
@@ -45,7 +45,6 @@ vec4 project_outside(int face, int k) {
   const float kMargin = 1.0 / 64.0, kFarthest = 2.0;  // pixels
   vec4 at[3];
   for (int i = 0; i < 3; ++i) at[i] = project_place(corners[(face + 1 + i) & 3].xyz);
-  if (min(at[0].w, min(at[1].w, at[2].w)) <= 1e-5) return at[k];
   vec2 size = 0.5 * vec2(frame.width, frame.height);
   vec2 middle = at[k].xy / at[k].w * size;
   vec2 u = at[(k + 1) % 3].xy / at[(k + 1) % 3].w * size - middle, v = at[(k + 2) % 3].xy / at[(k + 2) % 3].w * size - middle;
@@ -54,6 +53,29 @@ vec4 project_outside(int face, int k) {
   vec2 out_of_it = -(u + v) * (kMargin / max(abs(u.x * v.y - u.y * v.x), 1e-6));
   out_of_it *= min(1.0, kFarthest / max(length(out_of_it), 1e-6));
   return vec4((middle + out_of_it) / size * at[k].w, 0.0, at[k].w);
+}
+
+bool is_around_eye() {
+  if (frame.is_orthographic != 0) return false;
+  float nearest = min(min(corners[0].z, corners[1].z), min(corners[2].z, corners[3].z)) - frame.eye_z;
+  if (nearest < 1e-5) return true;
+  for (int k = 0; k < 4; ++k)
+    if (side_of_eye(k) <= 0.0) return false;
+  return true;
+}
+
+// Whether all corners are beyond one side of the picture, or behind the eye.
+bool is_out_of_sight() {
+  bool right = true, left = true, above = true, below = true, behind = true;
+  for (int k = 0; k < 4; ++k) {
+    vec4 at = project_place(corners[k].xyz);
+    right = right && at.x > at.w;
+    left = left && at.x < -at.w;
+    above = above && at.y > at.w;
+    below = below && at.y < -at.w;
+    behind = behind && at.w < 0.0;
+  }
+  return right || left || above || below || behind;
 }
 
 void main() {
@@ -69,10 +91,10 @@ void main() {
     corners[k].w = texelFetch(cell_scalars, cell).x;
 #endif
   }
-  bool holds_eye = frame.is_orthographic == 0;
-  for (int k = 0; k < 4; ++k) holds_eye = holds_eye && side_of_eye(k) > 0.0;
-  entered_face = holds_eye ? -1 : face;
-  if (holds_eye) {
+  bool is_at_eye = is_around_eye();
+  entered_face = is_at_eye ? -1 : face;
+  if (is_at_eye && is_out_of_sight()) return;
+  if (is_at_eye) {
     if (face == 0) gl_Position = vec4(corner == 1 ? 3.0 : -1.0, corner == 2 ? 3.0 : -1.0, 0.0, 1.0);
   } else if (side_of_eye(face) < 1e-5) {
     gl_Position = project_outside(face, corner);
