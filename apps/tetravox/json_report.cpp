@@ -58,6 +58,7 @@ Json prepare_json(const GridStatistics& grid) {
 Json projection_json(const ProjectionSettings& settings, const ProjectionStatistics& statistics) {
   return {{"sort", name_of(settings.sort)},
           {"decomposition", name_of(settings.decomposition)},
+          {"pixel_correction", settings.use_pixel_correction},
           {"transfer", name_of(settings.transfer)},
           {"seconds",
            {{"sort", statistics.sort_seconds},

@@ -77,6 +77,8 @@ void override_method(const MethodOptions& method, RenderSettings& settings) {
   settings.use_early_ray_termination = method.use_early_ray_termination.value_or(settings.use_early_ray_termination);
   settings.projection.sort = method.sort.value_or(settings.projection.sort);
   settings.projection.decomposition = method.decomposition.value_or(settings.projection.decomposition);
+  settings.projection.use_pixel_correction =
+      method.use_pixel_correction.value_or(settings.projection.use_pixel_correction);
   settings.projection.transfer = method.transfer.value_or(settings.projection.transfer);
   settings.threads = method.threads;
   settings.instruction_set = method.instruction_set;
@@ -106,6 +108,7 @@ std::vector<std::string> check_method(const MethodOptions& method, const RenderS
   };
   note_unused(method.sort && !is_projected && !is_vicp, "--sort", "project and vicp");
   note_unused(method.decomposition && !is_projected, "--decomposition", "project");
+  note_unused(method.use_pixel_correction && !is_projected, "--pixel-correction", "project");
   note_unused(method.transfer && !is_vicp, "--mesh-transfer", "vicp");
   // Segments of a mesh are its cells, and only `antiderivative` looks at the tolerance inside; a grid's follow it.
   const bool has_fixed_segments = !is_grid || settings.samples_per_voxel > 0.0;

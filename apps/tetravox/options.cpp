@@ -169,6 +169,8 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.sort, named(cell_sort_from_name)));
   add(app, "--decomposition", "cpu|gpu", "project: where cells become triangles (default: cpu)",
       store(method.decomposition, named(decomposition_from_name)));
+  add(app, "--pixel-correction", "on|off", "project: exact segments, or those that triangles carry (default: on)",
+      store(method.use_pixel_correction, parse_switch));
   add(app, "--mesh-transfer", "order|cells", "vicp: what is sent for a frame (default: order, the mesh stays)",
       store(method.transfer, named(mesh_transfer_from_name)));
   add(app, "--integrator", "NAME", "What turns a segment into colour (tetravox list methods)",

@@ -78,6 +78,7 @@ struct MethodOptions {
   std::optional<Source> source;
   std::optional<CellSort> sort;
   std::optional<Decomposition> decomposition;
+  std::optional<bool> use_pixel_correction;
   std::optional<MeshTransfer> transfer;
   std::optional<Classification> classification;
   std::optional<Integrator> integrator;

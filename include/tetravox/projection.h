@@ -33,7 +33,10 @@ enum class MeshTransfer {
 struct ProjectionSettings {
   CellSort sort = CellSort::kXmpvo;
   Decomposition decomposition = Decomposition::kCpu;  ///< `project`
-  MeshTransfer transfer = MeshTransfer::kOrder;       ///< `vicp`
+  /// `project`: pixels take their segments from the cell itself, by the products of ray casting, instead of from what
+  /// its triangles carry; pictures are exact then, and a cell is one or two triangles.
+  bool use_pixel_correction = true;
+  MeshTransfer transfer = MeshTransfer::kOrder;  ///< `vicp`
 
   bool operator==(const ProjectionSettings&) const = default;
 };

@@ -78,6 +78,8 @@ void cut_at_vertex(const std::array<const ScreenVertex*, 4>& vertices, const std
                    int inner, ProjectedCell& cell) {
   cell.x = vertices[inner]->x;
   cell.y = vertices[inner]->y;
+  for (int k = 0; k < 4; ++k)
+    if (k != inner) cell.outline[cell.outline_count++] = static_cast<std::uint8_t>(k);
   for (int opposite = 0; opposite < 4; ++opposite) {
     if (opposite == inner || weights[opposite] == 0) continue;
     std::uint8_t* corner = cell.corners.data() + 3 * cell.triangle_count++;
@@ -99,7 +101,9 @@ void cut_at_crossing(const std::array<const ScreenVertex*, 4>& vertices, const s
                                   static_cast<double>(corners[0].y) + at * static_cast<double>(along.y), corners);
   cell.x = static_cast<std::int32_t>(thick.x);
   cell.y = static_cast<std::int32_t>(thick.y);
+  cell.outline_count = 4;
   for (std::size_t k = 0; k < 4; ++k) {
+    cell.outline[k] = static_cast<std::uint8_t>(round[k]);
     std::uint8_t* corner = cell.corners.data() + 3 * cell.triangle_count++;
     corner[0] = static_cast<std::uint8_t>(round[k]);
     corner[1] = static_cast<std::uint8_t>(round[(k + 1) & 3]);
@@ -162,6 +166,40 @@ ProjectedCell decompose_cell(const std::array<const ScreenVertex*, 4>& vertices,
   return cell;
 }
 
+std::array<std::array<double, 2>, 4> find_outline(const std::array<const ScreenVertex*, 4>& vertices,
+                                                  const ProjectedCell& cell, int subpixels) {
+  const double margin = subpixels / 64.0, farthest = 2.0 * subpixels;
+  std::array<std::array<double, 2>, 4> outline{};
+  if (cell.outline_count == 0) {
+    // A line, or a point: a thin rectangle.
+    const auto [first, last] =
+        std::ranges::minmax(vertices, {}, [](const ScreenVertex* v) { return std::pair(v->x, v->y); });
+    const double x = last->x - first->x, y = last->y - first->y, size = std::hypot(x, y);
+    const double u = size > 0.0 ? margin * x / size : margin, v = size > 0.0 ? margin * y / size : 0.0;
+    const auto corner = [](const ScreenVertex* at, double dx, double dy) {
+      return std::array<double, 2>{at->x + dx, at->y + dy};
+    };
+    return {corner(first, -u - v, u - v), corner(first, v - u, -u - v), corner(last, u + v, v - u),
+            corner(last, u - v, u + v)};
+  }
+  const int count = cell.outline_count;
+  const auto towards = [&](const ScreenVertex& from, int to) {
+    const ScreenVertex& v = *vertices[cell.outline[to % count]];
+    const double x = v.x - from.x, y = v.y - from.y, size = std::max(std::hypot(x, y), 1e-9);
+    return std::array<double, 2>{x / size, y / size};
+  };
+  for (int k = 0; k < 4; ++k) {
+    const int index = std::min(k, count - 1);
+    const ScreenVertex& at = *vertices[cell.outline[index]];
+    const auto u = towards(at, index + 1), v = towards(at, index + count - 1);
+    const double x = u[0] + v[0], y = u[1] + v[1];
+    const double reach = margin / std::max(std::abs(u[0] * v[1] - u[1] * v[0]), 1e-9);
+    const double shrink = std::min(1.0, farthest / std::max(reach * std::hypot(x, y), 1e-9));
+    outline[k] = {at.x - x * reach * shrink, at.y - y * reach * shrink};
+  }
+  return outline;
+}
+
 bool is_out_of_sight(const std::array<const float*, 4>& seen, const ScreenView& view) {
   const scene::CameraFrame& frame = view.frame;
   // Half a pixel more than half the picture.
@@ -181,11 +219,13 @@ bool is_out_of_sight(const std::array<const float*, 4>& seen, const ScreenView& 
 
 namespace {
 
+/// Steps of the rasterizer in clip space.
+float to_clip(double at, int size, const ScreenView& view) {
+  return static_cast<float>(2.0 * at / (static_cast<double>(view.subpixels) * size) - 1.0);
+}
+
 ProjectedVertex vertex_at(std::int32_t x, std::int32_t y, const Carried& carried, const ScreenView& view) {
-  const auto to_clip = [&](std::int32_t at, int size) {
-    return static_cast<float>(2.0 * at / (static_cast<double>(view.subpixels) * size) - 1.0);
-  };
-  return {to_clip(x, view.frame.width), to_clip(y, view.frame.height), carried};
+  return {to_clip(x, view.frame.width, view), to_clip(y, view.frame.height, view), carried};
 }
 
 void extend(std::vector<ProjectedRange>& ranges, const ProjectedRange& range) {
@@ -208,12 +248,13 @@ struct Piece {
 class Decomposer {
  public:
   Decomposer(std::span<const float> seen, std::span<const mesh::CellVertices> cells,
-             std::span<const float> cell_scalars, std::span<const std::uint32_t> order, const ScreenView& view,
-             Projection& projection)
+             std::span<const float> cell_scalars, std::span<const std::uint32_t> order, bool use_outlines,
+             const ScreenView& view, Projection& projection)
       : seen_(seen),
         cells_(cells),
         cell_scalars_(cell_scalars),
         order_(order),
+        use_outlines_(use_outlines),
         view_(view),
         projection_(projection),
         width_(view.frame.width * view.subpixels),
@@ -232,7 +273,8 @@ class Decomposer {
         extend(piece.ranges, {true, place, 1});
       } else if (!is_beside_picture(vertices)) {
         const std::size_t first = indices.size();
-        const std::size_t count = add_triangles(place, ids, vertices, indices);
+        const std::size_t count =
+            use_outlines_ ? add_outline(place, vertices, indices) : add_triangles(place, ids, vertices, indices);
         extend(piece.ranges, {false, first, count});
       } else {
         continue;
@@ -249,6 +291,20 @@ class Decomposer {
     const auto [low_x, high_x] = std::minmax({v[0]->x, v[1]->x, v[2]->x, v[3]->x});
     const auto [low_y, high_y] = std::minmax({v[0]->y, v[1]->y, v[2]->y, v[3]->y});
     return high_x < 0 || low_x > width_ || high_y < 0 || low_y > height_;
+  }
+
+  std::size_t add_outline(std::size_t place, const std::array<const ScreenVertex*, 4>& vertices,
+                          std::vector<std::uint32_t>& indices) const {
+    const ProjectedCell cell = decompose_cell(vertices, view_.frame.is_orthographic);
+    const auto outline = find_outline(vertices, cell, view_.subpixels);
+    for (std::size_t k = 0; k < 4; ++k)
+      projection_.outlines[4 * place + k] = {to_clip(outline[k][0], view_.frame.width, view_),
+                                             to_clip(outline[k][1], view_.frame.height, view_),
+                                             static_cast<std::uint32_t>(place)};
+    const std::size_t count = cell.outline_count == 3 ? 3 : 6;
+    for (std::size_t k = 0; k < count; ++k)
+      indices.push_back(static_cast<std::uint32_t>(4 * place + std::array{0, 1, 2, 0, 2, 3}[k]));
+    return count;
   }
 
   std::size_t add_triangles(std::size_t place, const mesh::CellVertices& ids,
@@ -268,6 +324,7 @@ class Decomposer {
   std::span<const mesh::CellVertices> cells_;
   std::span<const float> cell_scalars_;
   std::span<const std::uint32_t> order_;
+  bool use_outlines_;
   const ScreenView& view_;
   Projection& projection_;
   std::int32_t width_, height_;
@@ -275,8 +332,13 @@ class Decomposer {
 
 }  // namespace
 
-void project_mesh(std::span<const float> seen, std::size_t cell_count, const ScreenView& view, Projection& projection) {
+void project_mesh(std::span<const float> seen, std::size_t cell_count, bool use_outlines, const ScreenView& view,
+                  Projection& projection) {
   project_vertices(seen, view, projection.vertices);
+  if (use_outlines) {
+    projection.outlines.resize(4 * cell_count);
+    return;
+  }
   const std::size_t vertex_count = projection.vertices.size();
   projection.drawn.resize(vertex_count + cell_count);
   support::parallel_chunks(vertex_count, 1 << 13, [&](std::size_t begin, std::size_t end) {
@@ -289,10 +351,10 @@ void project_mesh(std::span<const float> seen, std::size_t cell_count, const Scr
 }
 
 void decompose(std::span<const float> seen, std::span<const mesh::CellVertices> cells,
-               std::span<const float> cell_scalars, std::span<const std::uint32_t> order, const ScreenView& view,
-               Projection& projection) {
-  project_mesh(seen, order.size(), view, projection);
-  const Decomposer decomposer(seen, cells, cell_scalars, order, view, projection);
+               std::span<const float> cell_scalars, std::span<const std::uint32_t> order, bool use_outlines,
+               const ScreenView& view, Projection& projection) {
+  project_mesh(seen, order.size(), use_outlines, view, projection);
+  const Decomposer decomposer(seen, cells, cell_scalars, order, use_outlines, view, projection);
   const std::size_t count = (order.size() + kChunk - 1) / kChunk;
   projection.indices.resize(count);
   std::vector<Piece> pieces(count);
@@ -318,20 +380,21 @@ void decompose(std::span<const float> seen, std::span<const mesh::CellVertices> 
 }
 
 void find_ranges(std::span<const float> seen, std::span<const mesh::CellVertices> cells,
-                 std::span<const std::uint32_t> order, const ScreenView& view, Projection& projection) {
+                 std::span<const std::uint32_t> order, std::size_t indices, const ScreenView& view,
+                 Projection& projection) {
   projection.ranges.clear();
   projection.cells = order.size();
   projection.cells_at_eye = 0;
   const auto is_off_screen = [&](std::uint32_t id) { return projection.vertices[id].x == kOffScreen; };
   if (std::ranges::none_of(projection.vertices, [](const ScreenVertex& v) { return v.x == kOffScreen; })) {
-    extend(projection.ranges, {false, 0, 12 * order.size()});
+    extend(projection.ranges, {false, 0, indices * order.size()});
     return;
   }
   for (std::size_t place = 0; place < order.size(); ++place) {
     const mesh::CellVertices& ids = cells[order[place]];
     if (ids[0] == kNoCell) continue;
     if (std::ranges::none_of(ids, is_off_screen)) {
-      extend(projection.ranges, {false, 12 * place, 12});
+      extend(projection.ranges, {false, indices * place, indices});
       continue;
     }
     std::array<const float*, 4> corners{};
@@ -344,7 +407,7 @@ void find_ranges(std::span<const float> seen, std::span<const mesh::CellVertices
 
 std::uint64_t Projection::bytes() const {
   std::uint64_t sum = vertices.capacity() * sizeof(ScreenVertex) + drawn.capacity() * sizeof(ProjectedVertex) +
-                      ranges.capacity() * sizeof(ProjectedRange);
+                      outlines.capacity() * sizeof(OutlineVertex) + ranges.capacity() * sizeof(ProjectedRange);
   for (const auto& list : indices) sum += list.capacity() * sizeof(std::uint32_t);
   return sum;
 }

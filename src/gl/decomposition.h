@@ -55,7 +55,9 @@ struct Carried {
 struct ProjectedCell {
   int triangle_count = 0;  ///< 0 to 4; 0: seen as a line or less
   std::array<std::uint8_t, 12>
-      corners{};              ///< of the triangles: vertices 0 to 3, 4 is the thick vertex, always the last
+      corners{};                          ///< of the triangles: vertices 0 to 3, 4 is the thick vertex, always the last
+  int outline_count = 0;                  ///< 3 or 4; 0: seen as a line or less
+  std::array<std::uint8_t, 4> outline{};  ///< vertices of the outline, in turn
   std::int32_t x = 0, y = 0;  ///< the thick vertex; at the others the ray enters and leaves at the same place
   Carried thick;
 };
@@ -69,6 +71,19 @@ struct ProjectedVertex {
 };
 static_assert(sizeof(ProjectedVertex) == 24);
 
+/// A corner of what covers a cell in the picture.
+struct OutlineVertex {
+  float x = 0.0f, y = 0.0f;  ///< clip space
+  std::uint32_t place = 0;   ///< in the order
+};
+static_assert(sizeof(OutlineVertex) == 12);
+
+/// Four corners round the cell in the picture, in turn, moved out so that every pixel centre that may be in it is
+/// covered however places are rounded (Hasselgren, Akenine-Moeller, Ohlsson 2005). The last is the third where there
+/// are three.
+std::array<std::array<double, 2>, 4> find_outline(const std::array<const ScreenVertex*, 4>& vertices,
+                                                  const ProjectedCell& cell, int subpixels);
+
 /// A part of the order that is drawn in one go.
 struct ProjectedRange {
   bool is_at_eye = false;
@@ -77,8 +92,9 @@ struct ProjectedRange {
 
 /// A frame's cells as triangles in order.
 struct Projection {
-  std::vector<ScreenVertex> vertices;  ///< of the mesh
-  std::vector<ProjectedVertex> drawn;  ///< vertices of the mesh, then the thick vertex of each place in the order
+  std::vector<ScreenVertex> vertices;   ///< of the mesh
+  std::vector<ProjectedVertex> drawn;   ///< vertices of the mesh, then the thick vertex of each place in the order
+  std::vector<OutlineVertex> outlines;  ///< four a place in the order, instead of `drawn`
   std::vector<std::vector<std::uint32_t>> indices;  ///< to be drawn one after the other
   std::vector<ProjectedRange> ranges;
   std::uint64_t cells = 0, cells_at_eye = 0;  ///< that may be in the picture
@@ -87,17 +103,20 @@ struct Projection {
 };
 
 /// Fills what concerns vertices of the mesh, reusing memory; makes room for the thick vertices of `cell_count` cells.
-void project_mesh(std::span<const float> seen, std::size_t cell_count, const ScreenView& view, Projection& projection);
+/// `use_outlines`: for `Projection::outlines`.
+void project_mesh(std::span<const float> seen, std::size_t cell_count, bool use_outlines, const ScreenView& view,
+                  Projection& projection);
 
 /// Fills `projection`, reusing its memory. `cell_scalars`: with cell data, otherwise empty. In parallel; the same for
 /// any number of threads.
 void decompose(std::span<const float> seen, std::span<const mesh::CellVertices> cells,
-               std::span<const float> cell_scalars, std::span<const std::uint32_t> order, const ScreenView& view,
-               Projection& projection);
+               std::span<const float> cell_scalars, std::span<const std::uint32_t> order, bool use_outlines,
+               const ScreenView& view, Projection& projection);
 
-/// Fills the ranges alone, for triangles that the device makes: twelve indices a cell.
+/// Fills the ranges alone, for triangles that the device makes: `indices` a cell.
 void find_ranges(std::span<const float> seen, std::span<const mesh::CellVertices> cells,
-                 std::span<const std::uint32_t> order, const ScreenView& view, Projection& projection);
+                 std::span<const std::uint32_t> order, std::size_t indices, const ScreenView& view,
+                 Projection& projection);
 
 /// Whether the cell is certainly outside the picture or behind the eye. For cells with vertices off the screen.
 bool is_out_of_sight(const std::array<const float*, 4>& seen, const ScreenView& view);

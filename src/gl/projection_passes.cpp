@@ -26,10 +26,13 @@ void add_defines(const ProjectionShader& shader, std::vector<ShaderRecipe>& stag
   }
 }
 
+std::size_t indices_of(bool use_outlines) { return use_outlines ? 6 : 12; }
+
 std::string key_of(const std::string& source, const ProjectionShader& shader) {
   std::string key = source;
-  for (const auto& [holds, name] : {std::pair{shader.fills_lists, "lists"}, std::pair{shader.has_cell_data, "cells"},
-                                    std::pair{shader.is_orthographic, "orthographic"}})
+  for (const auto& [holds, name] :
+       {std::pair{shader.fills_lists, "lists"}, std::pair{shader.has_cell_data, "cells"},
+        std::pair{shader.is_orthographic, "orthographic"}, std::pair{shader.use_outlines, "outlines"}})
     if (holds) key.append(" ").append(name);
   return key.append(" ").append(name_of(shader.integrator));
 }
@@ -37,8 +40,9 @@ std::string key_of(const std::string& source, const ProjectionShader& shader) {
 }  // namespace
 
 std::vector<ShaderRecipe> recipe_of_projection(const ProjectionShader& shader) {
-  std::vector<ShaderRecipe> stages{{ShaderStage::kVertex, "project.vert", {}, {}},
-                                   {ShaderStage::kFragment, "project.frag", {}, {}}};
+  std::vector<ShaderRecipe> stages{
+      {ShaderStage::kVertex, shader.use_outlines ? "outline.vert" : "project.vert", {}, {}},
+      {ShaderStage::kFragment, shader.use_outlines ? "vicp.frag" : "project.frag", {}, {}}};
   add_defines(shader, stages);
   return stages;
 }
@@ -50,8 +54,9 @@ std::vector<ShaderRecipe> recipe_of_vicp(const ProjectionShader& shader) {
   return stages;
 }
 
-ShaderRecipe recipe_of_decomposition(bool has_cell_data) {
+ShaderRecipe recipe_of_decomposition(bool has_cell_data, bool use_outlines) {
   ShaderRecipe recipe{ShaderStage::kCompute, "decompose.comp", {}, {}};
+  if (use_outlines) recipe.defines.emplace_back("OUTLINES", "1");
   if (has_cell_data) recipe.defines.emplace_back("CELL_DATA", "1");
   return recipe;
 }
@@ -67,8 +72,16 @@ void ProjectionPasses::set(const ProjectionBlock& block) {
   block_.bind_uniform(kProjectionBinding);
 }
 
-void ProjectionPasses::send(const Projection& projection) {
-  vertices_.upload(projection.drawn.data(), projection.drawn.size() * sizeof(ProjectedVertex));
+void ProjectionPasses::send(const Projection& projection, bool use_outlines) {
+  if (use_outlines)
+    vertices_.upload(projection.outlines.data(), projection.outlines.size() * sizeof(OutlineVertex));
+  else
+    vertices_.upload(projection.drawn.data(), projection.drawn.size() * sizeof(ProjectedVertex));
+  send_indices(projection);
+  bind_triangles(use_outlines);
+}
+
+void ProjectionPasses::send_indices(const Projection& projection) {
   std::size_t bytes = 0;
   for (const auto& list : projection.indices) bytes += list.size() * sizeof(std::uint32_t);
   indices_.reserve(bytes);
@@ -77,19 +90,19 @@ void ProjectionPasses::send(const Projection& projection) {
     indices_.write(offset, list.data(), list.size() * sizeof(std::uint32_t));
     offset += list.size() * sizeof(std::uint32_t);
   }
-  bind_triangles();
 }
 
-void ProjectionPasses::decompose(const Projection& projection, std::size_t cell_count, bool has_cell_data,
+void ProjectionPasses::decompose(const Projection& projection, std::size_t cell_count, const ProjectionShader& shader,
                                  const Limits& limits, ProjectionBlock block) {
   const std::size_t vertex_count = projection.vertices.size();
-  const std::uint64_t vertex_bytes = (vertex_count + cell_count) * sizeof(ProjectedVertex);
-  const std::uint64_t index_bytes = 12 * cell_count * sizeof(std::uint32_t);
+  const std::uint64_t vertex_bytes = shader.use_outlines ? 4 * cell_count * sizeof(OutlineVertex)
+                                                         : (vertex_count + cell_count) * sizeof(ProjectedVertex);
+  const std::uint64_t index_bytes = indices_of(shader.use_outlines) * cell_count * sizeof(std::uint32_t);
   if (std::max(vertex_bytes, index_bytes) > limits.storage_bytes || 3 * vertex_count > limits.buffer_texels)
     throw Error(ErrorCode::kUnsupported, "OpenGL: this device does not cut meshes of " + std::to_string(cell_count) +
                                              " tetrahedra into triangles: use --decomposition cpu");
   vertices_.reserve(vertex_bytes);
-  vertices_.write(0, projection.drawn.data(), vertex_count * sizeof(ProjectedVertex));
+  if (!shader.use_outlines) vertices_.write(0, projection.drawn.data(), vertex_count * sizeof(ProjectedVertex));
   indices_.reserve(index_bytes);
   screen_vertices_.upload(GL_RG32UI, projection.vertices.data(), vertex_count * sizeof(ScreenVertex));
   screen_vertices_.bind(kVertexUnit);
@@ -98,33 +111,40 @@ void ProjectionPasses::decompose(const Projection& projection, std::size_t cell_
   set(block);
   vertices_.bind_storage(kDrawnBinding);
   indices_.bind_storage(kIndexBinding);
-  glUseProgram(
-      find_program(has_cell_data ? "decompose cells" : "decompose", {recipe_of_decomposition(has_cell_data)}).get());
+  const std::string key =
+      std::string("decompose") + (shader.has_cell_data ? " cells" : "") + (shader.use_outlines ? " outlines" : "");
+  glUseProgram(find_program(key, {recipe_of_decomposition(shader.has_cell_data, shader.use_outlines)}).get());
   constexpr std::size_t kGroup = 64;
   glDispatchCompute(static_cast<GLuint>((cell_count + kGroup - 1) / kGroup), 1, 1);
   glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT);
-  bind_triangles();
+  bind_triangles(shader.use_outlines);
 }
 
-void ProjectionPasses::bind_triangles() {
-  if (!triangles_) {
+void ProjectionPasses::bind_triangles(bool use_outlines) {
+  VertexArrayName& array = use_outlines ? outlines_ : triangles_;
+  if (!array) {
     GLuint name = 0;
     glCreateVertexArrays(1, &name);
-    triangles_ = VertexArrayName(name);
+    array = VertexArrayName(name);
     for (GLuint i = 0; i < 2; ++i) {
       glEnableVertexArrayAttrib(name, i);
       glVertexArrayAttribBinding(name, i, 0);
     }
-    glVertexArrayAttribFormat(name, 0, 2, GL_FLOAT, GL_FALSE, offsetof(ProjectedVertex, x));
-    glVertexArrayAttribFormat(name, 1, 4, GL_FLOAT, GL_FALSE, offsetof(ProjectedVertex, carried));
+    static_assert(offsetof(ProjectedVertex, x) == 0 && offsetof(OutlineVertex, x) == 0);
+    glVertexArrayAttribFormat(name, 0, 2, GL_FLOAT, GL_FALSE, 0);
+    if (use_outlines)
+      glVertexArrayAttribIFormat(name, 1, 1, GL_UNSIGNED_INT, offsetof(OutlineVertex, place));
+    else
+      glVertexArrayAttribFormat(name, 1, 4, GL_FLOAT, GL_FALSE, offsetof(ProjectedVertex, carried));
   }
-  glVertexArrayVertexBuffer(triangles_.get(), 0, vertices_.get(), 0, sizeof(ProjectedVertex));
-  glVertexArrayElementBuffer(triangles_.get(), indices_.get());
+  glVertexArrayVertexBuffer(array.get(), 0, vertices_.get(), 0,
+                            use_outlines ? sizeof(OutlineVertex) : sizeof(ProjectedVertex));
+  glVertexArrayElementBuffer(array.get(), indices_.get());
 }
 
 void ProjectionPasses::draw_triangles(const ProjectionShader& shader, std::size_t first_index, std::size_t count) {
   glUseProgram(find_program(key_of("project", shader), recipe_of_projection(shader)).get());
-  glBindVertexArray(triangles_.get());
+  glBindVertexArray((shader.use_outlines ? outlines_ : triangles_).get());
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT,
                  reinterpret_cast<const void*>(first_index * sizeof(std::uint32_t)));
 }
@@ -169,7 +189,7 @@ void ProjectionPasses::send(std::span<const std::uint32_t> order) {
 void ProjectionPasses::draw_faces(const ProjectionShader& shader, std::size_t first, std::size_t count) {
   // The projection does not matter to the shader.
   ProjectionShader any = shader;
-  any.is_orthographic = false;
+  any.is_orthographic = any.use_outlines = false;
   glUseProgram(find_program(key_of("vicp", any), recipe_of_vicp(any)).get());
   if (!no_attributes_) {
     GLuint name = 0;

@@ -25,12 +25,13 @@ struct ProjectionShader {
   bool has_cell_data = false;
   bool is_orthographic = false;
   bool fills_lists = false;  ///< instead of blending
+  bool use_outlines = false;
 };
 
 /// The shader programs of the sources `project` and `vicp`.
 std::vector<ShaderRecipe> recipe_of_projection(const ProjectionShader& shader);
 std::vector<ShaderRecipe> recipe_of_vicp(const ProjectionShader& shader);
-ShaderRecipe recipe_of_decomposition(bool has_cell_data);
+ShaderRecipe recipe_of_decomposition(bool has_cell_data, bool use_outlines);
 
 /// Draws into the framebuffer that is bound, blending as is set up. With the context current.
 class ProjectionPasses {
@@ -39,11 +40,11 @@ class ProjectionPasses {
   void set(const ProjectionBlock& block);
 
   /// Sends what `draw_triangles` draws.
-  void send(const Projection& projection);
+  void send(const Projection& projection, bool use_outlines);
   /// The same, with triangles made on the device: twelve indices a cell. The mesh and the order have been sent (`keep`,
   /// `send`). `block` is for the draws to come. @throws Error (kUnsupported) where the device cannot hold them.
-  void decompose(const Projection& projection, std::size_t cell_count, bool has_cell_data, const Limits& limits,
-                 ProjectionBlock block);
+  void decompose(const Projection& projection, std::size_t cell_count, const ProjectionShader& shader,
+                 const Limits& limits, ProjectionBlock block);
   void draw_triangles(const ProjectionShader& shader, std::size_t first_index, std::size_t count);
 
   /// Keeps vertices and cells of the mesh in its own frame.
@@ -59,11 +60,12 @@ class ProjectionPasses {
   std::uint64_t bytes() const;
 
  private:
-  void bind_triangles();
+  void send_indices(const Projection& projection);
+  void bind_triangles(bool use_outlines);
   const ProgramName& find_program(const std::string& key, const std::vector<ShaderRecipe>& recipes);
 
   std::map<std::string, ProgramName> programs_;
-  VertexArrayName triangles_, no_attributes_;
+  VertexArrayName triangles_, outlines_, no_attributes_;
   Buffer block_, vertices_, indices_;
   bool has_mesh_ = false;
   BufferTexture screen_vertices_;

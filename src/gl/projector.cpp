@@ -64,25 +64,25 @@ std::span<const std::uint32_t> Projector::sort_cells(const ProjectionFrame& fram
   return order;
 }
 
-void Projector::prepare_triangles(const ProjectionFrame& frame, std::span<const std::uint32_t> order,
-                                  ProjectionStatistics& statistics) {
+void Projector::prepare_triangles(const ProjectionFrame& frame, const ProjectionShader& shader,
+                                  std::span<const std::uint32_t> order, ProjectionStatistics& statistics) {
   const support::Timer timer;
   const scene::CameraFrame& seen_by = frame.seen_by;
   const ScreenView view{seen_by, kSubpixels, static_cast<float>(seen_by.eye[2])};
   if (frame.settings.projection.decomposition == Decomposition::kGpu) {
-    project_mesh(frame.seen, order.size(), view, projection_);
-    find_ranges(frame.seen, cells_, order, view, projection_);
+    project_mesh(frame.seen, order.size(), shader.use_outlines, view, projection_);
+    find_ranges(frame.seen, cells_, order, shader.use_outlines ? 6 : 12, view, projection_);
     passes_.keep(mesh_, cells_);
     passes_.send(order);
-    passes_.decompose(projection_, order.size(), mesh_.association == Association::kCell, frame.limits, block_);
+    passes_.decompose(projection_, order.size(), shader, frame.limits, block_);
   } else {
-    decompose(frame.seen, cells_, mesh_.cell_scalars, order, view, projection_);
-    passes_.send(projection_);
+    decompose(frame.seen, cells_, mesh_.cell_scalars, order, shader.use_outlines, view, projection_);
+    passes_.send(projection_, shader.use_outlines);
   }
   statistics.cells = projection_.cells;
   statistics.cells_at_eye = projection_.cells_at_eye;
   statistics.decompose_seconds = timer.seconds();
-  if (projection_.cells_at_eye > 0) prepare_faces(frame, order, statistics);
+  if (shader.use_outlines || projection_.cells_at_eye > 0) prepare_faces(frame, order, statistics);
 }
 
 void Projector::prepare_faces(const ProjectionFrame& frame, std::span<const std::uint32_t> order,
@@ -144,16 +144,17 @@ void Projector::draw(const ProjectionFrame& frame, RenderStatistics& statistics)
   }
   const std::span<const std::uint32_t> order = sort_cells(frame, statistics.projection);
   support::throw_if_cancelled(frame.progress);
+  const bool fills_lists = settings.projection.sort == CellSort::kExact;
+  const ProjectionShader shader{settings.integrator, mesh_.association == Association::kCell,
+                                frame.seen_by.is_orthographic, fills_lists,
+                                settings.source == Source::kProject && settings.projection.use_pixel_correction};
   if (settings.source == Source::kVicp)
     prepare_faces(frame, order, statistics.projection);
   else
-    prepare_triangles(frame, order, statistics.projection);
+    prepare_triangles(frame, shader, order, statistics.projection);
   support::throw_if_cancelled(frame.progress);
 
   const support::Timer timer;
-  const bool fills_lists = settings.projection.sort == CellSort::kExact;
-  const ProjectionShader shader{settings.integrator, mesh_.association == Association::kCell,
-                                frame.seen_by.is_orthographic, fills_lists};
   constexpr std::array<float, 4> kNothing{};
   glClearTexImage(frame.parts.picture().get(), 0, GL_RGBA, GL_FLOAT, kNothing.data());
   glBindFramebuffer(GL_FRAMEBUFFER, target_.get());

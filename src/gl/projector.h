@@ -34,8 +34,8 @@ class Projector {
 
  private:
   std::span<const std::uint32_t> sort_cells(const ProjectionFrame& frame, ProjectionStatistics& statistics);
-  void prepare_triangles(const ProjectionFrame& frame, std::span<const std::uint32_t> order,
-                         ProjectionStatistics& statistics);
+  void prepare_triangles(const ProjectionFrame& frame, const ProjectionShader& shader,
+                         std::span<const std::uint32_t> order, ProjectionStatistics& statistics);
   void prepare_faces(const ProjectionFrame& frame, std::span<const std::uint32_t> order,
                      ProjectionStatistics& statistics);
   void draw_ranges(const ProjectionShader& shader);

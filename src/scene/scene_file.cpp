@@ -95,13 +95,14 @@ void read_image(const JsonPlace& place, Scene& scene) {
 }
 
 ProjectionSettings read_projection(const JsonPlace& place) {
-  place.require_keys({"sort", "decomposition", "transfer"});
+  place.require_keys({"sort", "decomposition", "pixel_correction", "transfer"});
   ProjectionSettings settings;
   const auto read = [&](const char* key, auto& value, const auto& from_name) {
     if (const auto found = place.find(key)) value = at_place(*found, [&] { return from_name(found->string()); });
   };
   read("sort", settings.sort, cell_sort_from_name);
   read("decomposition", settings.decomposition, decomposition_from_name);
+  if (const auto use = place.find("pixel_correction")) settings.use_pixel_correction = use->boolean();
   read("transfer", settings.transfer, mesh_transfer_from_name);
   return settings;
 }
@@ -197,6 +198,7 @@ Json write_projection(const ProjectionSettings& settings) {
   Json json;
   json["sort"] = name_of(settings.sort);
   json["decomposition"] = name_of(settings.decomposition);
+  json["pixel_correction"] = settings.use_pixel_correction;
   json["transfer"] = name_of(settings.transfer);
   return json;
 }

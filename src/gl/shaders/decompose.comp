@@ -9,8 +9,8 @@ layout(binding = 8) uniform usamplerBuffer order;          // [cells]
 layout(binding = 9) uniform samplerBuffer cell_scalars;    // [cells], with cell data
 layout(binding = 6) uniform usamplerBuffer screen_vertices;  // [vertices][3] ScreenVertex: place; scalar; depth
 
-layout(std430, binding = 0) buffer Vertices { float drawn[]; };  // [..][6] ProjectedVertex
-layout(std430, binding = 1) buffer Indices { uint indices[]; };  // [cells][12], triangles without area where fewer
+layout(std430, binding = 0) buffer Vertices { float drawn[]; };  // [..][6] ProjectedVertex, or [cells][4][3] OutlineVertex
+layout(std430, binding = 1) buffer Indices { uint indices[]; };  // [cells][12] or [cells][6]; fewer triangles: no area
 
 const int kOffScreen = int(0x80000000);
 
@@ -57,11 +57,50 @@ void write_thick(uint place, dvec2 at, vec4 carried) {
   for (int k = 0; k < 4; ++k) drawn[first + 2u + uint(k)] = carried[k];
 }
 
+// As find_outline: `count` corners of `at` in turn, or of a line.
+void write_outline(uint place, dvec2 at[4], int count) {
+  const double kMargin = 4.0LF, kFarthest = 512.0LF;
+  dvec2 outline[4];
+  if (count == 0) {
+    dvec2 first = at[0], last = at[0];
+    for (int k = 1; k < 4; ++k) {
+      if (at[k].x < first.x || (at[k].x == first.x && at[k].y < first.y)) first = at[k];
+      if (at[k].x > last.x || (at[k].x == last.x && at[k].y > last.y)) last = at[k];
+    }
+    double size = length(last - first);
+    dvec2 u = size > 0.0LF ? (last - first) * (kMargin / size) : dvec2(kMargin, 0.0LF), v = dvec2(-u.y, u.x);
+    outline = dvec2[](first - u + v, first - u - v, last + u - v, last + u + v);
+    count = 4;
+  } else {
+    for (int k = 0; k < 4; ++k) {
+      int index = min(k, count - 1);
+      dvec2 u = at[(index + 1) % count] - at[index], v = at[(index + count - 1) % count] - at[index];
+      u /= max(length(u), 1e-9LF);
+      v /= max(length(v), 1e-9LF);
+      double reach = kMargin / max(abs(cross2(u, v)), 1e-9LF);
+      double shrink = min(1.0LF, kFarthest / max(reach * length(u + v), 1e-9LF));
+      outline[k] = at[index] - (u + v) * (reach * shrink);
+    }
+  }
+  for (uint k = 0u; k < 4u; ++k) {
+    vec2 clip = vec2(outline[k] * (2.0LF / (256.0LF * dvec2(frame.width, frame.height))) - 1.0LF);
+    drawn[12u * place + 3u * k] = clip.x;
+    drawn[12u * place + 3u * k + 1u] = clip.y;
+    drawn[12u * place + 3u * k + 2u] = uintBitsToFloat(place);
+  }
+  uint corners[6] = uint[](0u, 1u, 2u, 0u, 2u, 3u);
+  for (uint k = 0u; k < (count == 3 ? 3u : 6u); ++k) indices[6u * place + k] = 4u * place + corners[k];
+}
+
 void main() {
   uint place = gl_GlobalInvocationID.x;
   if (place >= projection.node_count) return;
   uint cell = texelFetch(order, int(place)).x, thick = projection.first_thick + place;
+#ifdef OUTLINES
+  for (uint k = 0u; k < 6u; ++k) indices[6u * place + k] = 4u * place;
+#else
   for (uint k = 0u; k < 12u; ++k) indices[12u * place + k] = thick;
+#endif
   uvec4 ids = texelFetch(cell_vertices, int(cell));
   if (ids.x == 0xFFFFFFFFu) return;
   ScreenVertex v[4];
@@ -77,6 +116,11 @@ void main() {
     positive += int(weights[k] > 0.0LF);
     negative += int(weights[k] < 0.0LF);
   }
+  dvec2 at[4];
+  for (int k = 0; k < 4; ++k) at[k] = dvec2(v[k].place);
+#ifdef OUTLINES
+  if (positive == 0 || negative == 0) write_outline(place, at, 0);
+#endif
   if (positive == 0 || negative == 0) return;
   double turn = positive > negative ? -1.0LF : 1.0LF;
   int members[4] = int[](0, 0, 0, 0), split = 0, end = 4;
@@ -93,6 +137,11 @@ void main() {
     depths += weight * v[k].depth;
     scalars += weight * ((frame.is_orthographic != 0 ? 1.0LF : v[k].depth) * double(v[k].scalar));
   }
+#ifdef OUTLINES
+  // One vertex inside: the three others; otherwise the edges in turn.
+  if (split == 1) write_outline(place, dvec2[](at[members[1]], at[members[2]], at[members[3]], at[members[0]]), 3);
+  else write_outline(place, dvec2[](at[members[0]], at[members[2]], at[members[1]], at[members[3]]), 4);
+#else
   depths /= totals;
   scalars /= totals;
   bool is_first_near = frame.is_orthographic != 0 ? depths.x <= depths.y : depths.x >= depths.y;
@@ -115,12 +164,13 @@ void main() {
     int round[4] = int[](members[0], members[2], members[1], members[3]);
     dvec2 corners[4];
     for (int k = 0; k < 4; ++k) corners[k] = dvec2(v[round[k]].place);
-    double at = weights[round[2]] / (weights[round[0]] + weights[round[2]]);
-    write_thick(place, snap_inside(corners[0] + at * (corners[2] - corners[0]), corners), carried);
+    double along = weights[round[2]] / (weights[round[0]] + weights[round[2]]);
+    write_thick(place, snap_inside(corners[0] + along * (corners[2] - corners[0]), corners), carried);
     for (int k = 0; k < 4; ++k) {
       indices[next++] = ids[round[k]];
       indices[next++] = ids[round[(k + 1) & 3]];
       indices[next++] = thick;
     }
   }
+#endif
 }

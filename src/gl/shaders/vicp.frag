@@ -1,4 +1,5 @@
-// View-independent cell projection (Weiler, Kraus, Merz, Ertl 2003): the ray of the pixel through the cell.
+// The ray of the pixel through the cell: view-independent cell projection (Weiler, Kraus, Merz, Ertl 2003), and
+// projected tetrahedra with corrected pixels.
 
 #include "projection.glsl"
 #include "tetrahedron.glsl"

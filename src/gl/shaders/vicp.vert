@@ -1,23 +1,7 @@
 // The source `vicp`: faces of cells that may look at the eye, twelve vertices a cell. A cell that holds the eye has none,
 // and faces that reach behind the eye cannot be moved out: these cells cover the whole picture.
 
-#include "projection.glsl"
-
-layout(binding = 6) uniform samplerBuffer vertices;        // [vertices] camera frame or mesh's, stored scalar
-layout(binding = 9) uniform samplerBuffer cell_scalars;    // [cells], with cell data
-layout(binding = 7) uniform usamplerBuffer cell_vertices;  // [cells], as they are or in order
-layout(binding = 8) uniform usamplerBuffer order;          // [cells]
-
-flat out vec4 corners[4];  // camera frame, stored scalar
-flat out int entered_face;  // opposite which corner; -1: any
-
-const uint kUnknown = 0xFFFFFFFFu;
-
-vec4 see(vec4 vertex) {
-  precise vec3 seen = vec3(dot(projection.right.xyz, vertex.xyz), dot(projection.up.xyz, vertex.xyz),
-                           dot(projection.forward.xyz, vertex.xyz));
-  return vec4(seen, vertex.w);
-}
+#include "projected_cells.glsl"
 
 vec3 to_eye(vec3 p) {
   return frame.is_orthographic != 0 ? vec3(0.0, 0.0, -1.0) : vec3(frame.eye_x, frame.eye_y, frame.eye_z) - p;
@@ -80,17 +64,8 @@ bool is_out_of_sight() {
 
 void main() {
   int place = gl_VertexID / 12, face = gl_VertexID % 12 / 3, corner = gl_VertexID % 3;
-  int cell = projection.is_ordered != 0 ? int(texelFetch(order, place).x) : place;
-  uvec4 ids = texelFetch(cell_vertices, cell);
   gl_Position = vec4(2.0, 2.0, 0.0, 1.0);  // outside: nothing is drawn
-  for (int k = 0; k < 4; ++k) corners[k] = vec4(0.0);
-  if (ids.x == kUnknown) return;
-  for (int k = 0; k < 4; ++k) {
-    corners[k] = see(texelFetch(vertices, int(ids[k])));
-#ifdef CELL_DATA
-    corners[k].w = texelFetch(cell_scalars, cell).x;
-#endif
-  }
+  if (!fetch_corners(place)) return;
   bool is_at_eye = is_around_eye();
   entered_face = is_at_eye ? -1 : face;
   if (is_at_eye && is_out_of_sight()) return;

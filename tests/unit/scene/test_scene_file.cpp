@@ -127,7 +127,7 @@ Scene random_scene(std::mt19937& random) {
   const auto pick = [&](int count) { return std::min(count - 1, static_cast<int>(unit(random) * count)); };
   if (unit(random) < 0.5)
     scene.settings.projection = {static_cast<CellSort>(pick(5)), static_cast<Decomposition>(pick(2)),
-                                 static_cast<MeshTransfer>(pick(2))};
+                                 unit(random) < 0.5, static_cast<MeshTransfer>(pick(2))};
   if (unit(random) < 0.7) scene.settings.source = unit(random) < 0.5 ? Source::kWalk : Source::kMarch;
   scene.settings.filter.kind = static_cast<FilterKind>(static_cast<int>(unit(random) * 7));
   if (scene.settings.filter.kind == FilterKind::kLanczos)
