@@ -119,14 +119,13 @@ void Projector::draw_ranges(const ProjectionShader& shader) {
 std::uint64_t Projector::blend(const ProjectionFrame& frame, const ProjectionShader& shader) {
   passes_.set(block_);
   glNamedFramebufferTexture(target_.get(), GL_COLOR_ATTACHMENT0, frame.parts.picture().get(), 0);
-  glEnable(GL_BLEND);
+  const Enabled blending(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   GLuint query = 0;
   glGenQueries(1, &query);
   glBeginQuery(GL_SAMPLES_PASSED, query);
   draw_ranges(shader);
   glEndQuery(GL_SAMPLES_PASSED);
-  glDisable(GL_BLEND);
   GLuint64 count = 0;
   glGetQueryObjectui64v(query, GL_QUERY_RESULT, &count);
   glDeleteQueries(1, &query);

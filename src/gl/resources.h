@@ -42,6 +42,18 @@ using FramebufferName = Name<free_framebuffer>;
 using ProgramName = Name<free_program>;
 using VertexArrayName = Name<free_vertex_array>;
 
+/// A capability of OpenGL that is on as long as this lives, and off afterwards.
+class Enabled {
+ public:
+  explicit Enabled(GLenum capability) : capability_(capability) { glEnable(capability); }
+  ~Enabled() { glDisable(capability_); }
+  Enabled(const Enabled&) = delete;
+  Enabled& operator=(const Enabled&) = delete;
+
+ private:
+  GLenum capability_;
+};
+
 /// Bytes on the device; grows as needed, never shrinks.
 class Buffer {
  public:

@@ -36,7 +36,7 @@ std::uint64_t SegmentLists::resolve(FrameParts& parts, const RenderSettings& set
   nodes_.reserve(room * kNodeBytes);
   counters_.reserve(sizeof(std::uint32_t));
   heads_.reserve(width * static_cast<std::uint64_t>(settings.height) * sizeof(std::uint32_t));
-  glEnable(GL_SCISSOR_TEST);
+  const Enabled scissor(GL_SCISSOR_TEST);
   std::uint64_t segments = 0;
   int rows = settings.height;
   for (int begin = 0; begin < settings.height;) {
@@ -57,12 +57,10 @@ std::uint64_t SegmentLists::resolve(FrameParts& parts, const RenderSettings& set
     std::uint32_t count = 0;
     counters_.download(&count, sizeof(count));
     if (count > room) {
-      if (rows == 1) {
-        glDisable(GL_SCISSOR_TEST);
+      if (end - begin == 1)
         throw Error(ErrorCode::kOutOfMemory,
                     "OpenGL: a row of this picture passes " + std::to_string(count) +
                         " cells, more than this device keeps: ask for fewer pixels, or for another --sort than exact");
-      }
       // As high as will fit, were all rows alike, and a bit less.
       rows = std::clamp(static_cast<int>(0.9 * static_cast<double>(room) / count * (end - begin)), 1, end - begin - 1);
       continue;
@@ -74,7 +72,6 @@ std::uint64_t SegmentLists::resolve(FrameParts& parts, const RenderSettings& set
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     begin = end;
   }
-  glDisable(GL_SCISSOR_TEST);
   return segments;
 }
 
