@@ -55,6 +55,22 @@ Json prepare_json(const GridStatistics& grid) {
       {"values", grid.values}, {"type", grid.type}, {"missing_values", grid.missing_values}, {"bricks", grid.bricks}};
 }
 
+Json projection_json(const ProjectionSettings& settings, const ProjectionStatistics& statistics) {
+  return {{"sort", name_of(settings.sort)},
+          {"decomposition", name_of(settings.decomposition)},
+          {"pixel_correction", settings.use_pixel_correction},
+          {"transfer", name_of(settings.transfer)},
+          {"seconds",
+           {{"sort", statistics.sort_seconds},
+            {"decompose", statistics.decompose_seconds},
+            {"draw", statistics.draw_seconds}}},
+          {"cells", statistics.cells},
+          {"cells_at_eye", statistics.cells_at_eye},
+          {"cycles", statistics.cycles},
+          {"cyclic_cells", statistics.cyclic_cells},
+          {"broken_relations", statistics.broken_relations}};
+}
+
 /// "i", "j", "k" of the axes whose points are not evenly spaced.
 Json uneven_axes(const GridShape& shape) {
   Json axes = Json::array();
@@ -130,7 +146,10 @@ std::string format_statistics(const PictureStatistics& statistics) {
   if (!statistics.render.device.empty()) json["device"] = statistics.render.device;
   json["kind"] = grid ? "grid" : "mesh";
   if (grid) json["dimensions"] = grid->dimensions;
-  json["source"] = name_of(statistics.settings.source.value_or(grid ? Source::kMarch : Source::kWalk));
+  const Source source = statistics.settings.source.value_or(grid ? Source::kMarch : Source::kWalk);
+  if (source == Source::kProject || source == Source::kVicp)
+    json["projection"] = projection_json(statistics.settings.projection, statistics.render.projection);
+  json["source"] = name_of(source);
   json["integrator"] = statistics.render.integrator;
   if (grid) json["filter"] = name_of(statistics.settings.filter);
   json["resolution"] = {statistics.settings.width, statistics.settings.height};

@@ -70,6 +70,7 @@ void run_list(const ListOptions& options) {
     case ListOptions::Topic::kMethods:
       std::cout << with_title("What draws by what (--backend, --source, --integrator):", method_rows())
                 << with_title("Sources (--source):", source_names())
+                << with_title("Orders of projected cells (--sort):", cell_sort_names())
                 << with_title("Classifications (--classification):", classification_names())
                 << with_title("Integrators (--integrator):", integrator_names())
                 << with_title("Orders of entries, by OpenGL (--entry-order):", entry_order_names())

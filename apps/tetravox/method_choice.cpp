@@ -120,6 +120,11 @@ void override_method(const MethodOptions& method, RenderSettings& settings) {
   settings.samples_per_voxel = method.samples_per_voxel.value_or(settings.samples_per_voxel);
   settings.tolerance = method.tolerance.value_or(settings.tolerance);
   settings.use_early_ray_termination = method.use_early_ray_termination.value_or(settings.use_early_ray_termination);
+  settings.projection.sort = method.sort.value_or(settings.projection.sort);
+  settings.projection.decomposition = method.decomposition.value_or(settings.projection.decomposition);
+  settings.projection.use_pixel_correction =
+      method.use_pixel_correction.value_or(settings.projection.use_pixel_correction);
+  settings.projection.transfer = method.transfer.value_or(settings.projection.transfer);
   settings.threads = method.threads;
   settings.instruction_set = method.instruction_set;
 }
@@ -129,8 +134,8 @@ std::vector<std::string> check_method(const MethodOptions& method, const RenderS
   const auto require = [&](bool is_suitable, bool is_option, const char* option, const char* key) {
     if (!is_suitable) refuse(is_option, option, key, is_grid, data_name);
   };
-  const Source source = is_grid ? Source::kMarch : Source::kWalk;
-  require(settings.source.value_or(source) == source, method.source.has_value(), "--source", "source");
+  const bool is_for_grids = settings.source == Source::kMarch;
+  require(!settings.source || is_for_grids == is_grid, method.source.has_value(), "--source", "source");
   require(is_grid || settings.filter == Filter{}, method.filter.has_value(), "--filter", "filter");
   require(is_grid || settings.samples_per_voxel == 0.0, method.samples_per_voxel.has_value(), "--samples-per-voxel",
           "samples_per_voxel");
@@ -149,6 +154,14 @@ std::vector<std::string> check_method(const MethodOptions& method, const RenderS
   if (method.samples && settings.integrator != Integrator::kPost)
     lines.push_back("--samples changes nothing: it is for --integrator post, and this picture is drawn by " +
                     integrator);
+  const bool is_projected = settings.source == Source::kProject, is_vicp = settings.source == Source::kVicp;
+  const auto note_unused = [&](bool is_given, const char* option, const char* source) {
+    if (is_given) lines.push_back(std::string(option) + " changes nothing: it is for --source " + source);
+  };
+  note_unused(method.sort && !is_projected && !is_vicp, "--sort", "project and vicp");
+  note_unused(method.decomposition && !is_projected, "--decomposition", "project");
+  note_unused(method.use_pixel_correction && !is_projected, "--pixel-correction", "project");
+  note_unused(method.transfer && !is_vicp, "--mesh-transfer", "vicp");
   // Segments of a mesh are its cells, and only `antiderivative` looks at the tolerance inside; a grid's follow it.
   const bool has_fixed_segments = !is_grid || settings.samples_per_voxel > 0.0;
   if (method.tolerance && settings.integrator != Integrator::kAntiderivative && has_fixed_segments)

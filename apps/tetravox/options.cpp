@@ -168,6 +168,14 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.entry_order, named(entry_order_from_name)));
   add(app, "--source", "NAME", "Where segments come from (tetravox list methods)",
       store(method.source, named(source_from_name)));
+  add(app, "--sort", "NAME", "project, vicp: order of cells, xmpvo (default) or another (tetravox list methods)",
+      store(method.sort, named(cell_sort_from_name)));
+  add(app, "--decomposition", "cpu|gpu", "project: where cells become triangles (default: cpu)",
+      store(method.decomposition, named(decomposition_from_name)));
+  add(app, "--pixel-correction", "on|off", "project: exact segments, or those that triangles carry (default: on)",
+      store(method.use_pixel_correction, parse_switch));
+  add(app, "--mesh-transfer", "order|cells", "vicp: what is sent for a frame (default: order, the mesh stays)",
+      store(method.transfer, named(mesh_transfer_from_name)));
   add_integrator(app, method);
   add(app, "--classification", "NAME", "Where the function is applied: preintegrated (default), post, pre",
       store(method.classification, parse_classification));

@@ -86,6 +86,10 @@ struct MethodOptions {
   std::optional<int> gl_device;
   std::optional<EntryOrder> entry_order;
   std::optional<Source> source;
+  std::optional<CellSort> sort;
+  std::optional<Decomposition> decomposition;
+  std::optional<bool> use_pixel_correction;
+  std::optional<MeshTransfer> transfer;
   std::optional<Classification> classification;
   std::optional<Integrator> integrator;
   PreintegrationOptions preintegration;

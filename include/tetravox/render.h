@@ -15,6 +15,7 @@
 #include "tetravox/multidimensional.h"
 #include "tetravox/preintegration.h"
 #include "tetravox/progress.h"
+#include "tetravox/projection.h"
 #include "tetravox/transfer_function.h"
 
 #include <cstdint>
@@ -28,8 +29,10 @@ namespace tetravox {
 
 /// Where segments come from.
 enum class Source {
-  kWalk,  ///< meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)
-  kMarch  ///< grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)
+  kWalk,     ///< meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)
+  kProject,  ///< meshes, OpenGL: projected tetrahedra (Shirley and Tuchman 1990; Wilhelms and Van Gelder 1991)
+  kVicp,     ///< meshes, OpenGL: view-independent cell projection (Weiler, Kraus, Merz, Ertl 2003)
+  kMarch     ///< grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)
 };
 
 /// What turns a segment into colour and opacity.
@@ -71,6 +74,7 @@ struct RenderSettings {
   EntryOrder entry_order = EntryOrder::kLists;  ///< meshes, gl
   Filter filter;                                ///< how a grid's field is reconstructed
   double samples_per_voxel = 0.0;  ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
+  ProjectionSettings projection;   ///< of the sources kProject and kVicp
   Lighting lighting;
   std::vector<Isosurface> surfaces;
   Clipping clipping;
@@ -91,14 +95,15 @@ struct RenderStatistics {
   std::uint64_t rays = 0;          ///< rays that met the data
   std::uint64_t stopped_rays = 0;  ///< rays stopped by the bound on steps (damaged meshes only)
   int threads = 0;
-  std::string backend;          ///< "cpu" or "gl"
-  std::string device;           ///< gl: what OpenGL calls its renderer
-  std::string instruction_set;  ///< cpu
-  std::string integrator;       ///< name of the one that drew; "domain" for functions of several variables
+  std::string backend;              ///< "cpu" or "gl"
+  std::string device;               ///< gl: what OpenGL calls its renderer
+  std::string instruction_set;      ///< cpu
+  ProjectionStatistics projection;  ///< of the sources kProject and kVicp
+  std::string integrator;           ///< name of the one that drew; "domain" for functions of several variables
 };
 
-/// Names of enumerators as on the command line and in scene files ("walk", "march"; "antiderivative", "partial",
-/// "post", "pre", "table3d", "polynomial", "cylindrical"), and back.
+/// Names of enumerators as on the command line and in scene files ("walk", "project", "vicp", "march";
+/// "antiderivative", "partial", "post", "pre", "table3d", "polynomial", "cylindrical"), and back.
 std::string name_of(Source source);
 std::string name_of(Integrator integrator);
 std::string name_of(EntryOrder order);      ///< "lists", "peeling"

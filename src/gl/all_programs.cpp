@@ -1,5 +1,7 @@
 #include "src/gl/all_programs.h"
 
+#include "src/gl/projection_passes.h"
+#include "src/gl/segment_lists.h"
 #include "src/gl/table_maker.h"
 #include "src/gl/walk_passes.h"
 
@@ -19,11 +21,29 @@ void add_walk(std::vector<ProgramRecipe>& programs) {
       }
 }
 
+void add_projection(std::vector<ProgramRecipe>& programs) {
+  for (const bool has_cell_data : {false, true})
+    for (const bool use_outlines : {false, true})
+      programs.push_back({"decomposition", {recipe_of_decomposition(has_cell_data, use_outlines)}});
+  for (const IntegratorShader& integrator : all_integrator_shaders()) {
+    const bool has_cell_data = integrator.name == "cell data";
+    programs.push_back({"lists, " + integrator.name, {recipe_of_resolving(integrator, has_cell_data)}});
+    for (const bool is_orthographic : {false, true})
+      for (const bool fills_lists : {false, true})
+        for (const bool use_outlines : {false, true}) {
+          const ProjectionShader shader{integrator, has_cell_data, is_orthographic, fills_lists, use_outlines};
+          programs.push_back({"project, " + integrator.name, recipe_of_projection(shader)});
+          if (!use_outlines) programs.push_back({"vicp, " + integrator.name, recipe_of_vicp(shader)});
+        }
+  }
+}
+
 }  // namespace
 
 std::vector<ProgramRecipe> all_programs() {
   std::vector<ProgramRecipe> programs;
   add_walk(programs);
+  add_projection(programs);
   for (const auto& [name, stages] : recipes_of_tables()) programs.push_back({"tables, " + name, stages});
   return programs;
 }

@@ -28,7 +28,11 @@ struct PreintegrationBlock {
 struct MakerBlock {
 #include "src/gl/shaders/tables/maker_block.glsl"
 };
+struct ProjectionBlock {
+#include "src/gl/shaders/projection_block.glsl"
+};
 static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 6 * 16 &&
-              sizeof(PreintegrationBlock) == 3 * 16 && sizeof(MakerBlock) == 4 * 16);
+              sizeof(PreintegrationBlock) == 3 * 16 && sizeof(MakerBlock) == 4 * 16 &&
+              sizeof(ProjectionBlock) == 4 * 16);
 
 }  // namespace tetravox::gl

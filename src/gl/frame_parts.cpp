@@ -48,8 +48,10 @@ void FrameParts::begin(const Limits& limits, const scene::CameraFrame& camera, d
   upload(rays.column_offset, rays.column_slope, settings.width, columns_);
   upload(rays.row_offset, rays.row_slope, settings.height, rows_);
   FrameBlock& block = frame_;
+  block = {};
   block.width = settings.width;
   block.height = settings.height;
+  block.row_end = settings.height;
   block.z_near = rays.grid.z_near;
   block.world_per_local = rays.grid.world_per_local;
   block.eye_x = static_cast<float>(camera.eye[0]);

@@ -9,6 +9,7 @@
 #include "tetravox/mesh.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tetravox::gl {
@@ -23,6 +24,8 @@ class MeshBuffers {
   scene::CameraFrame see(const Camera& camera, int width, int height);
   /// Whether rays of that frame may walk behind the eye: one in a cell, or the plane of an orthographic camera.
   bool is_behind_eye(const scene::CameraFrame& frame) const;
+  /// Of the last `see`: [vertices][4] camera frame, stored scalar.
+  std::span<const float> seen() const { return seen_; }
   void bind() const;
   /// Vertices, faces and the first of those around the eye.
   WalkBlock describe() const;

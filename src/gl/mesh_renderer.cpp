@@ -2,6 +2,7 @@
 #include "src/gl/frame_renderers.h"
 #include "src/gl/integrator_tables.h"
 #include "src/gl/mesh_buffers.h"
+#include "src/gl/projector.h"
 #include "src/gl/walk_passes.h"
 #include "src/mesh/edges.h"
 #include "src/support/threads.h"
@@ -61,15 +62,21 @@ class MeshRenderer final : public scene::FrameRenderer {
     device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, context_->limits(),
                        context.progress);
     statistics.plan_seconds = timer.seconds();
-    const bool has_cell_data = mesh_.association == Association::kCell;
-    device.walk.draw({device.mesh.describe(),
-                      device.frame,
-                      settings,
-                      device.tables.shader(settings),
-                      {has_cell_data, device.mesh.is_behind_eye(frame), settings.entry_order},
-                      context_->limits(),
-                      context.progress},
-                     statistics);
+    const IntegratorShader integrator = device.tables.shader(settings);
+    if (settings.source.value_or(Source::kWalk) == Source::kWalk)
+      device.walk.draw(
+          {device.mesh.describe(),
+           device.frame,
+           settings,
+           integrator,
+           {mesh_.association == Association::kCell, device.mesh.is_behind_eye(frame), settings.entry_order},
+           context_->limits(),
+           context.progress},
+          statistics);
+    else
+      device.projector.draw(
+          {camera, frame, device.mesh.seen(), device.frame, settings, integrator, context_->limits(), context.progress},
+          statistics);
     device.frame.download(image);
     context_->require_no_error("drawing");
     note_backend(*context_, statistics);
@@ -81,19 +88,21 @@ class MeshRenderer final : public scene::FrameRenderer {
            2 * scene::preintegration_bytes(settings);
   }
   std::uint64_t bytes() const override {
-    return device_->mesh.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->walk.bytes();
+    return device_->mesh.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->walk.bytes() +
+           device_->projector.bytes();
   }
-  std::vector<Source> sources() const override { return {Source::kWalk}; }
+  std::vector<Source> sources() const override { return {Source::kWalk, Source::kProject, Source::kVicp}; }
   double diagonal() const override { return scene::diagonal_of(mesh_.bounds); }
 
  private:
   /// What lives on the device, and dies with the context current.
   struct Device {
-    Device(const PreparedMesh& prepared, const Limits& limits) : mesh(prepared, limits) {}
+    Device(const PreparedMesh& prepared, const Limits& limits) : mesh(prepared, limits), projector(prepared) {}
     MeshBuffers mesh;
     FrameParts frame;
     IntegratorTables tables;
     WalkPasses walk;
+    Projector projector;
   };
 
   const PreparedMesh& mesh_;
@@ -119,10 +128,13 @@ Renderer make_gl_renderer(const PreparedMesh& mesh, const GlOptions& options) {
 }
 
 std::vector<SourceMethods> gl_methods() {
-  return {{"gl",
-           Source::kWalk,
-           {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d, Integrator::kPolynomial,
-            Integrator::kPost, Integrator::kCylindrical}}};
+  std::vector<SourceMethods> methods;
+  for (const Source source : {Source::kWalk, Source::kProject, Source::kVicp})
+    methods.push_back({"gl",
+                       source,
+                       {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d,
+                        Integrator::kPolynomial, Integrator::kPost, Integrator::kCylindrical}});
+  return methods;
 }
 
 }  // namespace tetravox

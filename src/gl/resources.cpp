@@ -24,6 +24,10 @@ void Buffer::upload(const void* data, std::size_t bytes) {
   if (bytes) glNamedBufferSubData(get(), 0, static_cast<GLsizeiptr>(bytes), data);
 }
 
+void Buffer::write(std::size_t offset, const void* data, std::size_t bytes) const {
+  if (bytes) glNamedBufferSubData(get(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
+}
+
 void Buffer::clear_to_zero(std::size_t bytes) const {
   constexpr GLuint kZero = 0;
   glClearNamedBufferSubData(get(), GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER, GL_UNSIGNED_INT,

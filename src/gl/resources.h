@@ -42,11 +42,25 @@ using FramebufferName = Name<free_framebuffer>;
 using ProgramName = Name<free_program>;
 using VertexArrayName = Name<free_vertex_array>;
 
+/// A capability of OpenGL that is on as long as this lives, and off afterwards.
+class Enabled {
+ public:
+  explicit Enabled(GLenum capability) : capability_(capability) { glEnable(capability); }
+  ~Enabled() { glDisable(capability_); }
+  Enabled(const Enabled&) = delete;
+  Enabled& operator=(const Enabled&) = delete;
+
+ private:
+  GLenum capability_;
+};
+
 /// Bytes on the device; grows as needed, never shrinks.
 class Buffer {
  public:
   /// Makes the buffer hold these bytes, at its beginning.
   void upload(const void* data, std::size_t bytes);
+  /// The same from an offset on; there must be room.
+  void write(std::size_t offset, const void* data, std::size_t bytes) const;
   /// Makes room; what it held is lost where it must grow.
   void reserve(std::size_t bytes);
   void clear_to_zero(std::size_t bytes) const;

@@ -17,9 +17,27 @@ struct Name {
   std::string_view description;
 };
 
-constexpr std::array<Name<Source>, 2> kSources{
+constexpr std::array<Name<Source>, 4> kSources{
     {{Source::kWalk, "walk", "meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)"},
+     {Source::kProject, "project",
+      "meshes, --backend gl: projected tetrahedra (Shirley and Tuchman 1990; Wilhelms and Van Gelder 1991)"},
+     {Source::kVicp, "vicp", "meshes, --backend gl: view-independent cell projection (Weiler, Kraus, Merz, Ertl 2003)"},
      {Source::kMarch, "march", "grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)"}}};
+
+constexpr std::array<Name<CellSort>, 5> kCellSorts{
+    {{CellSort::kCentroid, "centroid", "cells by the distance of centroids: wrong now and then"},
+     {CellSort::kMpvo, "mpvo", "cells by shared faces: exact for convex meshes (Williams 1992)"},
+     {CellSort::kMpvonc, "mpvonc", "his heuristic for non-convex meshes"},
+     {CellSort::kXmpvo, "xmpvo",
+      "exact for every mesh without cycles (Silva, Mitchell, Williams 1998); used by default"},
+     {CellSort::kExact, "exact", "the segments of each pixel by their depth: right for cyclic meshes, too"}}};
+
+constexpr std::array<Name<Decomposition>, 2> kDecompositions{
+    {{Decomposition::kCpu, "cpu", "by threads"}, {Decomposition::kGpu, "gpu", "by a compute shader"}}};
+
+constexpr std::array<Name<MeshTransfer>, 2> kMeshTransfers{
+    {{MeshTransfer::kOrder, "order", "the order of cells; the mesh stays in graphics memory (Espinha and Celes 2005)"},
+     {MeshTransfer::kCells, "cells", "vertices and cells in order (Weiler, Kraus, Merz, Ertl 2003)"}}};
 
 constexpr std::array<Name<Integrator>, 7> kIntegrators{
     {{Integrator::kAntiderivative, "antiderivative",
@@ -158,6 +176,17 @@ LengthSpacing length_spacing_from_name(const std::string& name) {
 OpacityModel opacity_model_from_name(const std::string& name) {
   return enumerator_from_name(kOpacityModels, name, "opacity model");
 }
+std::string name_of(CellSort sort) { return name_of_enumerator(kCellSorts, sort); }
+std::string name_of(Decomposition decomposition) { return name_of_enumerator(kDecompositions, decomposition); }
+std::string name_of(MeshTransfer transfer) { return name_of_enumerator(kMeshTransfers, transfer); }
+CellSort cell_sort_from_name(const std::string& name) { return enumerator_from_name(kCellSorts, name, "sort"); }
+Decomposition decomposition_from_name(const std::string& name) {
+  return enumerator_from_name(kDecompositions, name, "decomposition");
+}
+MeshTransfer mesh_transfer_from_name(const std::string& name) {
+  return enumerator_from_name(kMeshTransfers, name, "mesh transfer");
+}
+std::vector<std::pair<std::string, std::string>> cell_sort_names() { return list_names(kCellSorts); }
 std::string name_of(OpacityWeight weight) { return name_of_enumerator(kOpacityWeights, weight); }
 std::string name_of(GradientMethod method) { return name_of_enumerator(kGradientMethods, method); }
 std::string name_of(LightKind kind) { return name_of_enumerator(kLightKinds, kind); }

@@ -116,11 +116,25 @@ void read_preintegration(const JsonPlace& place, PreintegrationSettings& tables)
   at_place(place, [&] { validate_preintegration(tables); });
 }
 
+ProjectionSettings read_projection(const JsonPlace& place) {
+  place.require_keys({"sort", "decomposition", "pixel_correction", "transfer"});
+  ProjectionSettings settings;
+  const auto read = [&](const char* key, auto& value, const auto& from_name) {
+    if (const auto found = place.find(key)) value = at_place(*found, [&] { return from_name(found->string()); });
+  };
+  read("sort", settings.sort, cell_sort_from_name);
+  read("decomposition", settings.decomposition, decomposition_from_name);
+  if (const auto use = place.find("pixel_correction")) settings.use_pixel_correction = use->boolean();
+  read("transfer", settings.transfer, mesh_transfer_from_name);
+  return settings;
+}
+
 void read_render(const JsonPlace& place, RenderSettings& settings) {
-  place.require_keys({"source", "integrator", "preintegration", "filter", "tolerance", "samples", "samples_per_voxel",
-                      "opacity_weight", "opacity_weight_scale", "early_ray_termination"});
+  place.require_keys({"source", "projection", "integrator", "preintegration", "filter", "tolerance", "samples",
+                      "samples_per_voxel", "opacity_weight", "opacity_weight_scale", "early_ray_termination"});
   if (const auto source = place.find("source"))
     settings.source = at_place(*source, [&] { return source_from_name(source->string()); });
+  if (const auto projection = place.find("projection")) settings.projection = read_projection(*projection);
   if (const auto integrator = place.find("integrator"))
     at_place(*integrator, [&] { parse_integrator(integrator->string(), settings); });
   if (const auto tables = place.find("preintegration")) read_preintegration(*tables, settings.preintegration);
@@ -220,9 +234,19 @@ Json write_preintegration(const PreintegrationSettings& tables) {
   return json;
 }
 
+Json write_projection(const ProjectionSettings& settings) {
+  Json json;
+  json["sort"] = name_of(settings.sort);
+  json["decomposition"] = name_of(settings.decomposition);
+  json["pixel_correction"] = settings.use_pixel_correction;
+  json["transfer"] = name_of(settings.transfer);
+  return json;
+}
+
 Json write_render(const RenderSettings& settings) {
   Json json;
   if (settings.source) json["source"] = name_of(*settings.source);
+  if (settings.projection != ProjectionSettings{}) json["projection"] = write_projection(settings.projection);
   json["integrator"] = format_integrator(settings);
   const Json tables = write_preintegration(settings.preintegration);
   if (!tables.empty()) json["preintegration"] = tables;

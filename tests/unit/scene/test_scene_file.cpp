@@ -65,6 +65,7 @@ void expect_same(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.settings.integrator, b.settings.integrator);
   EXPECT_EQ(a.settings.filter, b.settings.filter);
   EXPECT_EQ(a.settings.samples_per_voxel, b.settings.samples_per_voxel);
+  EXPECT_EQ(a.settings.projection, b.settings.projection);
   EXPECT_EQ(a.settings.tolerance, b.settings.tolerance);
   EXPECT_EQ(a.settings.samples, b.settings.samples);
   EXPECT_EQ(a.settings.use_early_ray_termination, b.settings.use_early_ray_termination);
@@ -123,6 +124,10 @@ Scene random_scene(std::mt19937& random) {
   scene.settings.width = 1 + static_cast<int>(unit(random) * 16383);
   scene.settings.height = 1 + static_cast<int>(unit(random) * 16383);
   scene.settings.integrator = static_cast<Integrator>(static_cast<int>(unit(random) * 4));
+  const auto pick = [&](int count) { return std::min(count - 1, static_cast<int>(unit(random) * count)); };
+  if (unit(random) < 0.5)
+    scene.settings.projection = {static_cast<CellSort>(pick(5)), static_cast<Decomposition>(pick(2)),
+                                 unit(random) < 0.5, static_cast<MeshTransfer>(pick(2))};
   if (unit(random) < 0.7) scene.settings.source = unit(random) < 0.5 ? Source::kWalk : Source::kMarch;
   scene.settings.filter.kind = static_cast<FilterKind>(static_cast<int>(unit(random) * 7));
   if (scene.settings.filter.kind == FilterKind::kLanczos)

@@ -1,0 +1,67 @@
+#pragma once
+
+/// How cells of a mesh are projected (sources `project` and `vicp` of the OpenGL backend; docs/methods/opengl.md).
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetravox {
+
+/// What puts cells, or what they leave in a pixel, in visibility order.
+enum class CellSort {
+  kCentroid,  ///< cells by the distance of centroids
+  kMpvo,      ///< cells by shared faces (Williams 1992)
+  kMpvonc,    ///< his heuristic for non-convex meshes
+  kXmpvo,     ///< exact for every mesh without cycles (after Silva, Mitchell, Williams 1998)
+  kExact      ///< the segments of each pixel by their depth, on the device: right for cyclic meshes, too
+};
+
+/// Where tetrahedra become triangles.
+enum class Decomposition {
+  kCpu,  ///< threads
+  kGpu   ///< a compute shader
+};
+
+/// What of the mesh `vicp` sends to the device for a frame.
+enum class MeshTransfer {
+  kOrder,  ///< the order of cells alone, the mesh stays in graphics memory (VICP-GPU of Espinha and Celes 2005)
+  kCells   ///< vertices and cells, in order (Weiler, Kraus, Merz, Ertl 2003)
+};
+
+struct ProjectionSettings {
+  CellSort sort = CellSort::kXmpvo;
+  Decomposition decomposition = Decomposition::kCpu;  ///< `project`
+  /// `project`: pixels take their segments from the cell itself, by the products of ray casting, instead of from what
+  /// its triangles carry; pictures are exact then, and a cell is one or two triangles.
+  bool use_pixel_correction = true;
+  MeshTransfer transfer = MeshTransfer::kOrder;  ///< `vicp`
+
+  bool operator==(const ProjectionSettings&) const = default;
+};
+
+/// What a frame of projected cells cost, and how well its order holds.
+struct ProjectionStatistics {
+  double sort_seconds = 0.0;       ///< of the frame's seconds; 0 for `exact`, whose sorting is part of the drawing
+  double decompose_seconds = 0.0;  ///< on the CPU
+  double draw_seconds = 0.0;       ///< sent, drawn and read back
+  std::uint64_t cells = 0;         ///< that may be in the picture
+  std::uint64_t cells_at_eye = 0;  ///< of these, that reach behind the eye or far beyond the picture
+  std::uint64_t cycles = 0;        ///< sets of cells that hide one another in a circle
+  std::uint64_t cyclic_cells = 0, broken_relations = 0;
+};
+
+/// Names as on the command line and in scene files: "centroid", "mpvo", "mpvonc", "xmpvo", "exact"; "cpu", "gpu";
+/// "order", "cells".
+std::string name_of(CellSort sort);
+std::string name_of(Decomposition decomposition);
+std::string name_of(MeshTransfer transfer);
+/// @throws Error (kInvalidArgument) that lists the names there are.
+CellSort cell_sort_from_name(const std::string& name);
+Decomposition decomposition_from_name(const std::string& name);
+MeshTransfer mesh_transfer_from_name(const std::string& name);
+/// Names, one-line descriptions with the paper.
+std::vector<std::pair<std::string, std::string>> cell_sort_names();
+
+}  // namespace tetravox
