@@ -36,6 +36,8 @@ class IntegratorTables {
   /// a segment.
   void bind(const RenderSettings& settings, float tolerance);
   const optics::ControlPointTable& control_points() const { return control_points_; }
+  /// Stored scalars from node to node of the antiderivatives.
+  float node_width() const { return 1.0f / antiderivative_.nodes_per_scalar; }
   std::uint64_t bytes() const;
 
  private:

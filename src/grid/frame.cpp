@@ -65,6 +65,12 @@ GridFrame make_grid_frame(const GridShape& shape) {
   return frame;
 }
 
+double mean_spacing(const GridFrame& frame) {
+  const auto& m = frame.world_from_grid;
+  return std::cbrt(std::abs(m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+                            m[2] * (m[3] * m[7] - m[4] * m[6])));
+}
+
 std::array<ValueRange, 3> bounds_of(const GridShape& shape) {
   const GridFrame frame = make_grid_frame(shape);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -1,0 +1,33 @@
+#pragma once
+
+/// What rays must know of the bricks of a grid, on the device.
+
+#include "src/gl/blocks.h"
+#include "src/gl/resources.h"
+#include "src/grid/frame.h"
+#include "src/scene/brick_plan.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace tetravox::gl {
+
+/// Texture units of the source `march`.
+inline constexpr GLuint kBrickUnit = 6, kPlaneUnit = 7, kSteepnessUnit = 8, kValueUnit = 9;
+
+/// A brick's plan as shaders have it (march.glsl): level, stride, flags.
+std::uint32_t pack_plan(const scene::BrickPlan& plan, bool has_missing);
+
+/// Plans, steepness table, planes of uneven axes. With the context current.
+class MarchBricks {
+ public:
+  void upload(const scene::PlanSources& sources, const std::vector<scene::BrickPlan>& plans,
+              const grid::GridFrame& frame);
+  void bind() const;
+  std::uint64_t bytes() const { return plans_.bytes() + steepness_.bytes() + planes_.bytes(); }
+
+ private:
+  BufferTexture plans_, steepness_, planes_;
+};
+
+}  // namespace tetravox::gl

@@ -1,0 +1,118 @@
+#include "src/gl/march_passes.h"
+
+#include "src/gl/integrator_tables.h"
+#include "src/support/threads.h"
+
+#include <array>
+#include <numeric>
+
+namespace tetravox::gl {
+namespace {
+
+constexpr GLuint kMarchBinding = 2;                       // uniform block
+constexpr GLuint kCounterBinding = 0, kPauseBinding = 1;  // storage blocks
+constexpr GLuint kPictureUnit = 0;                        // image
+
+struct Counters {
+  std::uint32_t unfinished_count = 0, met_count = 0;
+  std::array<std::uint32_t, 64> segments{};
+};
+constexpr std::size_t kPauseBytes = 32;
+
+std::string marcher_file(const MarchKind& kind) {
+  if (kind.is_constant) return "march_constants.glsl";
+  if (kind.integrator == Integrator::kPre) return kind.has_samples ? "sample_densities.glsl" : "march_densities.glsl";
+  return kind.has_samples ? "sample_scalars.glsl" : "march_scalars.glsl";
+}
+
+std::string integrator_of(const MarchKind& kind) {
+  // A fixed rate has one sample a step of post-classification.
+  const bool is_sampled = kind.has_samples && kind.integrator == Integrator::kPost;
+  if (kind.is_constant || is_sampled || kind.integrator == Integrator::kPre) return integrator_file({}, true);
+  return integrator_file(kind.integrator, false);
+}
+
+std::string key_of(const MarchKind& kind) {
+  std::string key = name_of(kind.integrator);
+  for (const bool flag : {kind.is_uneven, kind.is_constant, kind.is_nearest, kind.has_nodes, kind.has_samples})
+    key += flag ? '1' : '0';
+  return key;
+}
+
+}  // namespace
+
+ShaderRecipe recipe_of_march(const MarchKind& kind) {
+  ShaderRecipe recipe{ShaderStage::kCompute, "march_grid.comp", {}, {}};
+  const auto define = [&](bool is_set, const char* name) {
+    if (is_set) recipe.defines.emplace_back(name, "1");
+  };
+  define(kind.is_uneven, "IS_UNEVEN");
+  define(kind.is_nearest, "IS_NEAREST");
+  define(kind.has_nodes, "HAS_NODES");
+  recipe.includes.emplace_back("marcher.glsl", marcher_file(kind));
+  recipe.includes.emplace_back("integrator.glsl", integrator_of(kind));
+  const char* nodes = "nodes_of_texture.glsl";
+  if (kind.has_nodes) nodes = kind.integrator == Integrator::kPre ? "nodes_of_densities.glsl" : "nodes_of_buffer.glsl";
+  recipe.includes.emplace_back("nodes.glsl", nodes);
+  return recipe;
+}
+
+std::vector<MarchKind> march_kinds() {
+  std::vector<MarchKind> kinds;
+  for (const bool is_uneven : {false, true}) {
+    kinds.push_back({Integrator::kAntiderivative, is_uneven, true, false, false, false});
+    kinds.push_back({Integrator::kAntiderivative, is_uneven, true, true, false, false});
+    for (const Integrator integrator :
+         {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kPost, Integrator::kPre})
+      for (const bool has_nodes : {false, true})
+        for (const bool has_samples : {false, true})
+          kinds.push_back({integrator, is_uneven, false, false, has_nodes, has_samples});
+  }
+  return kinds;
+}
+
+/// Returns how many rays need another pass.
+std::uint32_t MarchPasses::draw_pass(const MarchFrame& frame, const MarchBlock& block, RenderStatistics& statistics) {
+  block_.upload(&block, sizeof(block));
+  block_.bind_uniform(kMarchBinding);
+  counters_.clear_to_zero(sizeof(Counters));
+  counters_.bind_storage(kCounterBinding);
+  pauses_.bind_storage(kPauseBinding);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  dispatch_pixels(frame.settings);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  Counters counters;
+  counters_.download(&counters, sizeof(counters));
+  statistics.segments += std::accumulate(counters.segments.begin(), counters.segments.end(), std::uint64_t{0});
+  statistics.rays += counters.met_count;
+  support::throw_if_cancelled(frame.progress);
+  return counters.unfinished_count;
+}
+
+void MarchPasses::draw(const MarchFrame& frame, RenderStatistics& statistics) {
+  const auto pixels = static_cast<std::size_t>(frame.settings.width) * static_cast<std::size_t>(frame.settings.height);
+  const std::string key = key_of(frame.kind);
+  auto program = programs_.find(key);
+  if (program == programs_.end()) {
+    const ShaderRecipe recipe = recipe_of_march(frame.kind);
+    program = programs_.emplace(key, make_program(std::span(&recipe, 1))).first;
+  }
+  counters_.reserve(sizeof(Counters));
+  pauses_.reserve(pixels * kPauseBytes);
+  frame.parts.picture().bind_image(kPictureUnit, GL_WRITE_ONLY);
+  glUseProgram(program->second.get());
+  MarchBlock block = frame.block;
+  block.is_first_pass = 1;
+  std::uint32_t unfinished = 0;
+  bool has_more = true;
+  while (has_more) {
+    if (frame.next_bricks) has_more = frame.next_bricks(block);
+    do {
+      unfinished = draw_pass(frame, block, statistics);
+      block.is_first_pass = 0;
+    } while (unfinished > 0 && !frame.next_bricks);
+    has_more = has_more && unfinished > 0;
+  }
+}
+
+}  // namespace tetravox::gl
