@@ -81,15 +81,7 @@ std::array<std::uint32_t, 3> position_of(const PreparedGrid& grid, std::uint32_t
 std::vector<std::uint32_t> order_bricks(const PreparedGrid& grid, const grid::GridFrame& frame,
                                         const std::vector<std::uint32_t>& bricks, const scene::GridView& view) {
   const auto& counts = grid.bricks.counts;
-  std::array<std::int64_t, 3> nearest{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t last = counts[axis] - 1;
-    if (view.camera.is_orthographic)
-      nearest[axis] = view.eye[axis] > 0.0 ? 0 : last;
-    else
-      while (nearest[axis] < last && frame.plane(axis, (nearest[axis] + 1) * kBrickCells) <= view.eye[axis])
-        ++nearest[axis];
-  }
+  const std::array<std::int64_t, 3> nearest = scene::nearest_brick(grid, frame, view);
   const auto distance = [&](std::uint32_t brick) {
     const auto at = position_of(grid, brick);
     std::size_t sum = 0;

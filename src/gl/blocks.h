@@ -25,7 +25,7 @@ struct MarchBlock {
 struct TablesBlock {
 #include "src/gl/shaders/integrators/tables_block.glsl"
 };
-static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(MarchBlock) == 11 * 16 &&
+static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(MarchBlock) == 9 * 16 &&
               sizeof(TablesBlock) == 6 * 16);
 
 }  // namespace tetravox::gl

@@ -63,7 +63,7 @@ class GridRenderer final : public scene::FrameRenderer {
   }
   std::uint64_t bytes() const override {
     return device_->values.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->bricks.bytes() +
-           device_->march.bytes();
+           device_->nodes.bytes() + device_->march.bytes();
   }
   std::vector<Source> sources() const override { return {Source::kMarch}; }
   double diagonal() const override { return scene::diagonal_of(grid_.bounds); }
@@ -76,6 +76,7 @@ class GridRenderer final : public scene::FrameRenderer {
     FrameParts frame;
     IntegratorTables tables;
     MarchBricks bricks;
+    FilteredNodes nodes;
     MarchPasses march;
   };
 
@@ -85,7 +86,9 @@ class GridRenderer final : public scene::FrameRenderer {
     return settings.filter.kind == FilterKind::kNearest || (is_cell && !scene::wants_kernel(settings.filter));
   }
   const PreparedGrid& drawn() const { return field_.middles ? *field_.middles : grid_; }
+  scene::PlanSources plan_sources(const RenderSettings& settings) const;
   void plan(const RenderSettings& settings);
+  FilteredBricks filtered_bricks(const scene::PlanSources& sources, const RenderSettings& settings) const;
   MarchKind kind_of(const RenderSettings& settings) const;
   MarchBlock describe(const scene::GridView& view, const RenderSettings& settings) const;
 
@@ -100,6 +103,10 @@ class GridRenderer final : public scene::FrameRenderer {
   bool is_planned_ = false, has_domain_ = false;
 };
 
+scene::PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
+  return {&drawn(), &field_, &steepness_, device_->tables.node_width(), diagonal(), is_constant(settings), false, {}};
+}
+
 /// Filter, plans, and what of them goes to the device.
 void GridRenderer::plan(const RenderSettings& settings) {
   if (field_.kernel ? field_.filter != settings.filter : scene::wants_kernel(settings.filter)) {
@@ -110,10 +117,10 @@ void GridRenderer::plan(const RenderSettings& settings) {
   const scene::PlanSettings wanted{
       settings.filter, settings.integrator, settings.tolerance, settings.samples_per_voxel, false, {}};
   if (is_planned_ && wanted == planned_for_) return;
-  const scene::PlanSources sources{
-      &drawn(), &field_, &steepness_, device_->tables.node_width(), diagonal(), is_constant(settings), false, {}};
+  const scene::PlanSources sources = plan_sources(settings);
   plans_ = scene::plan_bricks(sources, wanted);
   device_->bricks.upload(sources, plans_, frame_);
+  device_->nodes.forget();
   planned_for_ = wanted;
   is_planned_ = true;
 }
@@ -131,6 +138,16 @@ MarchKind GridRenderer::kind_of(const RenderSettings& settings) const {
                      !(is_preintegrated && !kind.is_uneven && drawn().missing_values == 0);
   if (kind.is_constant) kind.integrator = Integrator::kAntiderivative;  // all are the same
   return kind;
+}
+
+FilteredBricks GridRenderer::filtered_bricks(const scene::PlanSources& sources, const RenderSettings& settings) const {
+  FilteredBricks bricks{&sources, &plans_, {}, nullptr};
+  bricks.field.reader = field_.reader.get();
+  bricks.field.padding = field_.coefficients.empty() ? 0 : scene::FilteredField::kMargin;
+  bricks.field.kernel = field_.kernel.get();
+  bricks.field.allowed_rate = scene::allowed_rate_of(settings.tolerance, diagonal());
+  if (settings.integrator == Integrator::kPre) bricks.points = &device_->tables.control_points();
+  return bricks;
 }
 
 MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSettings& settings) const {
@@ -169,6 +186,11 @@ MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSetti
 void GridRenderer::render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context,
                           Image& image, RenderStatistics& statistics) {
   require_supported(settings);
+  // The spline would have to pass through the densities of each function: no table of the values does that.
+  if (settings.integrator == Integrator::kPre && settings.filter.kind == FilterKind::kInterpolatingBspline)
+    throw Error(
+        ErrorCode::kInvalidArgument,
+        "pre-classification does not go with the filter 'bspline-interpolating': choose 'bspline' or 'catmull-rom'");
   if (has_domain_)
     throw Error(ErrorCode::kUnsupported,
                 "the OpenGL backend does not know functions of several variables yet: draw with --backend cpu");
@@ -180,10 +202,23 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
   device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);
   device.values.volume().bind(kValueUnit);
   device.bricks.bind();
-  device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance);
+  device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, field_.kernel != nullptr);
   statistics.plan_seconds = timer.seconds();
-  device.march.draw({describe(view, settings), kind_of(settings), device.frame, settings, context.progress, {}},
-                    statistics);
+  MarchFrame march{describe(view, settings), kind_of(settings), device.frame, settings, context.progress, {}};
+  const scene::PlanSources sources = plan_sources(settings);
+  const FilteredBricks filtered = filtered_bricks(sources, settings);
+  std::vector<NodePlace> places;
+  if (march.kind.has_nodes) {
+    device.nodes.begin(frame_, view, filtered, context_->limits());
+    march.next_bricks = [&] {
+      const bool has_more = device.nodes.next(filtered, context.progress, places);
+      device.bricks.place_nodes(places);
+      device.bricks.bind();
+      device.nodes.bind(kValueUnit);
+      return has_more;
+    };
+  }
+  device.march.draw(march, statistics);
   device.frame.download(image);
   context_->require_no_error("drawing");
   note_backend(*context_, statistics);

@@ -65,7 +65,7 @@ void IntegratorTables::upload_control_points() {
   has_control_points_ = true;
 }
 
-void IntegratorTables::bind(const RenderSettings& settings, float tolerance) {
+void IntegratorTables::bind(const RenderSettings& settings, float tolerance, bool may_overshoot) {
   if (!has_control_points_) upload_control_points();
   points_.bind(kControlPointUnit);
   intervals_.bind(kFirstIntervalUnit);
@@ -98,7 +98,7 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance) {
   block.split_threshold = 12.0f * tolerance;
   block.last_node = table.last_node;
   block.has_coarse = table.has_coarse;
-  block.covers_data = table.covers_data;
+  block.covers_data = table.covers_data && !may_overshoot;
   block.points_first = control_points_.first;
   block.buckets_per_scalar = control_points_.buckets_per_scalar;
   block.last_bucket = static_cast<int>(control_points_.first_interval.size()) - 1;

@@ -33,8 +33,8 @@ class IntegratorTables {
  public:
   void set_transfer_function(const OpticalFunction& function, const TableSources& sources);
   /// Puts on the device what the integrator of these settings needs and is not there yet, and binds it. `tolerance`: of
-  /// a segment.
-  void bind(const RenderSettings& settings, float tolerance);
+  /// a segment; `may_overshoot`: whether scalars may lie beyond the range of the data.
+  void bind(const RenderSettings& settings, float tolerance, bool may_overshoot = false);
   const optics::ControlPointTable& control_points() const { return control_points_; }
   /// Stored scalars from node to node of the antiderivatives.
   float node_width() const { return 1.0f / antiderivative_.nodes_per_scalar; }

@@ -1,6 +1,5 @@
 #include "src/gl/march_bricks.h"
 
-#include <array>
 #include <bit>
 #include <cstddef>
 
@@ -14,21 +13,29 @@ std::uint32_t pack_plan(const scene::BrickPlan& plan, bool has_missing) {
 void MarchBricks::upload(const scene::PlanSources& sources, const std::vector<scene::BrickPlan>& plans,
                          const grid::GridFrame& frame) {
   const BrickSummaries& bricks = sources.grid->bricks;
-  std::vector<std::array<std::uint32_t, 4>> records(plans.size());
+  records_.resize(plans.size());
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const ValueRange range = scene::range_of(sources, i);
     const float steepness = plans[i].is_curved ? sources.steepness->largest_steepness(static_cast<float>(range.min),
                                                                                       static_cast<float>(range.max))
                                                : 0.0f;
-    records[i] = {pack_plan(plans[i], bricks.has_missing[i] != 0), std::bit_cast<std::uint32_t>(steepness), 0, 1};
+    records_[i] = {pack_plan(plans[i], bricks.has_missing[i] != 0), std::bit_cast<std::uint32_t>(steepness), 0, 1};
   }
-  plans_.upload(GL_RGBA32UI, records.data(), records.size() * sizeof(records[0]));
+  plans_.upload(GL_RGBA32UI, records_.data(), records_.size() * sizeof(records_[0]));
   steepness_.upload(GL_R32F, sources.steepness->steepness.data(), sources.steepness->steepness.size() * sizeof(float));
   std::vector<float> planes;
   for (int axis = 0; axis < 3; ++axis)
     for (std::uint32_t i = 0; i < sources.grid->data.shape.dimensions[axis]; ++i)
       planes.push_back(frame.plane(axis, i));
   planes_.upload(GL_R32F, planes.data(), planes.size() * sizeof(float));
+}
+
+void MarchBricks::place_nodes(const std::vector<NodePlace>& places) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    records_[i][2] = places[i].first;
+    records_[i][3] = places[i].parts;
+  }
+  plans_.upload(GL_RGBA32UI, records_.data(), records_.size() * sizeof(records_[0]));
 }
 
 void MarchBricks::bind() const {

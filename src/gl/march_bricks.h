@@ -3,10 +3,12 @@
 /// What rays must know of the bricks of a grid, on the device.
 
 #include "src/gl/blocks.h"
+#include "src/gl/filtered_nodes.h"
 #include "src/gl/resources.h"
 #include "src/grid/frame.h"
 #include "src/scene/brick_plan.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -23,10 +25,13 @@ class MarchBricks {
  public:
   void upload(const scene::PlanSources& sources, const std::vector<scene::BrickPlan>& plans,
               const grid::GridFrame& frame);
+  /// Says where the nodes of filtered bricks are, [bricks].
+  void place_nodes(const std::vector<NodePlace>& places);
   void bind() const;
   std::uint64_t bytes() const { return plans_.bytes() + steepness_.bytes() + planes_.bytes(); }
 
  private:
+  std::vector<std::array<std::uint32_t, 4>> records_;  ///< plan, bits of the steepness, first node, parts
   BufferTexture plans_, steepness_, planes_;
 };
 

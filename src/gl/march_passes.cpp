@@ -14,10 +14,10 @@ constexpr GLuint kCounterBinding = 0, kPauseBinding = 1;  // storage blocks
 constexpr GLuint kPictureUnit = 0;                        // image
 
 struct Counters {
-  std::uint32_t unfinished_count = 0, met_count = 0;
+  std::uint32_t unfinished_count = 0, waiting_count = 0, met_count = 0;
   std::array<std::uint32_t, 64> segments{};
 };
-constexpr std::size_t kPauseBytes = 32;
+constexpr std::size_t kPauseBytes = 48;
 
 std::string marcher_file(const MarchKind& kind) {
   if (kind.is_constant) return "march_constants.glsl";
@@ -51,9 +51,7 @@ ShaderRecipe recipe_of_march(const MarchKind& kind) {
   define(kind.has_nodes, "HAS_NODES");
   recipe.includes.emplace_back("marcher.glsl", marcher_file(kind));
   recipe.includes.emplace_back("integrator.glsl", integrator_of(kind));
-  const char* nodes = "nodes_of_texture.glsl";
-  if (kind.has_nodes) nodes = kind.integrator == Integrator::kPre ? "nodes_of_densities.glsl" : "nodes_of_buffer.glsl";
-  recipe.includes.emplace_back("nodes.glsl", nodes);
+  recipe.includes.emplace_back("nodes.glsl", kind.has_nodes ? "nodes_of_buffer.glsl" : "nodes_of_texture.glsl");
   return recipe;
 }
 
@@ -71,8 +69,13 @@ std::vector<MarchKind> march_kinds() {
   return kinds;
 }
 
-/// Returns how many rays need another pass.
-std::uint32_t MarchPasses::draw_pass(const MarchFrame& frame, const MarchBlock& block, RenderStatistics& statistics) {
+/// Rays that need another pass, or bricks that are not there yet.
+struct MarchPasses::Waiting {
+  std::uint32_t for_pass = 0, for_bricks = 0;
+};
+
+MarchPasses::Waiting MarchPasses::draw_pass(const MarchFrame& frame, const MarchBlock& block,
+                                            RenderStatistics& statistics) {
   block_.upload(&block, sizeof(block));
   block_.bind_uniform(kMarchBinding);
   counters_.clear_to_zero(sizeof(Counters));
@@ -86,7 +89,7 @@ std::uint32_t MarchPasses::draw_pass(const MarchFrame& frame, const MarchBlock& 
   statistics.segments += std::accumulate(counters.segments.begin(), counters.segments.end(), std::uint64_t{0});
   statistics.rays += counters.met_count;
   support::throw_if_cancelled(frame.progress);
-  return counters.unfinished_count;
+  return {counters.unfinished_count, counters.waiting_count};
 }
 
 void MarchPasses::draw(const MarchFrame& frame, RenderStatistics& statistics) {
@@ -103,15 +106,14 @@ void MarchPasses::draw(const MarchFrame& frame, RenderStatistics& statistics) {
   glUseProgram(program->second.get());
   MarchBlock block = frame.block;
   block.is_first_pass = 1;
-  std::uint32_t unfinished = 0;
-  bool has_more = true;
-  while (has_more) {
-    if (frame.next_bricks) has_more = frame.next_bricks(block);
+  for (bool has_more = true; has_more;) {
+    has_more = frame.next_bricks && frame.next_bricks();
+    Waiting waiting;
     do {
-      unfinished = draw_pass(frame, block, statistics);
+      waiting = draw_pass(frame, block, statistics);
       block.is_first_pass = 0;
-    } while (unfinished > 0 && !frame.next_bricks);
-    has_more = has_more && unfinished > 0;
+    } while (waiting.for_pass > 0);
+    has_more = has_more && waiting.for_bricks > 0;
   }
 }
 

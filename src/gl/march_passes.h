@@ -38,8 +38,8 @@ struct MarchFrame {
   const FrameParts& parts;
   const RenderSettings& settings;
   const Progress& progress;
-  /// With nodes: puts those of the next bricks on the device and their orders into the block; false after the last.
-  std::function<bool(MarchBlock&)> next_bricks;
+  /// With nodes: puts those of the next bricks on the device; false where they are the last.
+  std::function<bool()> next_bricks;
 };
 
 /// With the context current.
@@ -50,7 +50,8 @@ class MarchPasses {
   std::uint64_t bytes() const { return block_.bytes() + counters_.bytes() + pauses_.bytes(); }
 
  private:
-  std::uint32_t draw_pass(const MarchFrame& frame, const MarchBlock& block, RenderStatistics& statistics);
+  struct Waiting;
+  Waiting draw_pass(const MarchFrame& frame, const MarchBlock& block, RenderStatistics& statistics);
 
   std::map<std::string, ProgramName> programs_;
   Buffer block_, counters_, pauses_;

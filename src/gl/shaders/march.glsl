@@ -123,6 +123,15 @@ void leave_brick(GridRay ray, inout BrickWalk walk) {
 #endif
 }
 
+// What a ray carries from brick to brick at a fixed rate.
+struct Carried {
+  vec4 value;    // of the sample before
+  float depth;   // where it lies; before everything: there is none yet
+  float number;  // of the next one
+  float z_exit;  // where the ray leaves the grid
+};
+Carried carried;
+
 uvec4 plan_of(ivec3 brick) {
   return texelFetch(bricks, (brick.z * march.bricks_y + brick.y) * march.bricks_x + brick.x);
 }

@@ -11,11 +11,10 @@ int bricks_x;
 int bricks_y;
 int bricks_z;
 int is_first_pass;
-int first_order;     // of the bricks that a pass draws: see `order_of`
-int past_order;
-int samples_in_all;  // at a fixed rate: whether transparent bricks count
 int plane_base_y;    // where the planes of the second axis begin, and of the third
-vec4 order_from;     // the brick nearest to the eye
+int plane_base_z;
+int unused_a;
+int unused_b;
 float texel_offset;  // stored scalar = texel_offset + texel * texel_scale
 float texel_scale;
 float allowed_rate;  // error in colour for one unit of world length that a segment may have
@@ -24,7 +23,3 @@ float steepness_first;
 float bins_per_scalar;
 float sample_distance;  // world length between samples at a fixed rate; 0: none
 float negligible;       // transmittance below which a ray ends
-int plane_base_z;
-int unused_a;
-int unused_b;
-int unused_c;

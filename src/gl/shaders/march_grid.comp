@@ -8,6 +8,7 @@ layout(binding = 0, rgba32f) uniform writeonly image2D picture;
 
 layout(std430, binding = 0) buffer Counters {
   uint unfinished_count;  // rays that need another pass
+  uint waiting_count;     // rays that have come to a brick whose values are not there yet
   uint met_count;         // rays that met a brick which is seen
   uint segments[64];      // spread, so that they are not fought for
 } counters;
@@ -16,7 +17,8 @@ struct Pause {  // what a ray needs to go on in another pass
   vec4 sum;
   float z;      // kNever: it has arrived
   uint has_met;
-  uint unused_0, unused_1;
+  float sample_depth, sample_number;  // see `Carried`
+  vec4 sample_value;
 };
 layout(std430, binding = 1) buffer Pauses { Pause pauses[]; };  // [height][width]
 
@@ -31,12 +33,14 @@ void main() {
   GridRay ray = grid_ray_of(pixel);
   vec2 depths = clip_grid(ray);
   vec4 sum = kNothingYet;
-  bool has_met = false;
+  bool has_met = false, is_waiting = false;
+  carried = Carried(vec4(0.0), -kNever, 0.0, depths.y);
   if (march.is_first_pass == 0) {
     depths.x = pauses[place].z;
     if (depths.x >= kNever) return;
     sum = pauses[place].sum;
     has_met = pauses[place].has_met != 0u;
+    carried = Carried(pauses[place].sample_value, pauses[place].sample_depth, pauses[place].sample_number, depths.y);
   }
   uint segment_count = 0u;
   BrickWalk walk;
@@ -53,7 +57,10 @@ void main() {
       leave_brick(ray, walk);
       is_done = has_left(walk);
     }
-    if (is_done) break;
+#ifdef HAS_NODES
+    is_waiting = plan.w == 0u;
+#endif
+    if (is_done || is_waiting) break;
     has_met = true;
     march_brick(ray, walk.brick, plan, walk.z, leave, sum, segment_count);
     leave_brick(ray, walk);
@@ -68,5 +75,11 @@ void main() {
   }
   pauses[place].sum = sum;
   pauses[place].has_met = uint(has_met);
-  atomicAdd(counters.unfinished_count, 1u);
+  pauses[place].sample_value = carried.value;
+  pauses[place].sample_depth = carried.depth;
+  pauses[place].sample_number = carried.number;
+  if (is_waiting)
+    atomicAdd(counters.waiting_count, 1u);
+  else
+    atomicAdd(counters.unfinished_count, 1u);
 }
