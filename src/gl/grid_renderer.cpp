@@ -204,7 +204,15 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
   device.bricks.bind();
   device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, field_.kernel != nullptr);
   statistics.plan_seconds = timer.seconds();
-  MarchFrame march{describe(view, settings), kind_of(settings), device.frame, settings, context.progress, {}};
+  MarchKind kind = kind_of(settings);
+  // Where every fetch is a call, as of software, fewer and larger ones pay; hardware has caches and units for them.
+  const bool wants_squares =
+      context_->device().is_software && !kind.has_nodes && !kind.is_constant && kind.integrator != Integrator::kPre;
+  if (const Volume* squares = wants_squares ? device.values.squares(*context_) : nullptr) {
+    squares->bind(kSquareUnit);
+    kind.has_squares = true;
+  }
+  MarchFrame march{describe(view, settings), kind, device.frame, settings, context.progress, {}};
   const scene::PlanSources sources = plan_sources(settings);
   const FilteredBricks filtered = filtered_bricks(sources, settings);
   std::vector<NodePlace> places;

@@ -77,46 +77,106 @@ void Volume::make(GLenum format, const std::array<int, 3>& size, const Context& 
   glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
-bool keeps_integers(const GridData& grid) { return scalar_type_size(grid.type) <= 2 && grid.component != kMagnitude; }
+namespace {
 
-GridTexture::GridTexture(const PreparedGrid& grid, const Context& context) {
-  const GridData& data = grid.data;
-  const auto values = data.value_dimensions();
-  const std::array<int, 3> size{static_cast<int>(values[0]), static_cast<int>(values[1]), static_cast<int>(values[2])};
-  const bool is_integer = keeps_integers(data);
-  const bool is_byte = scalar_type_size(data.type) == 1;
-  const GLenum format = !is_integer ? GL_R32F : is_byte ? GL_R8 : GL_R16;
-  const GLenum type = !is_integer ? GL_FLOAT : is_byte ? GL_UNSIGNED_BYTE : GL_UNSIGNED_SHORT;
-  volume_.make(format, size, context);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-
-  const std::size_t slice = values[0] * values[1];
-  const grid::BlockReader reader(data, {grid.scalar_offset, grid.scalar_scale});
-  std::vector<std::byte> bytes;
-  std::vector<float> scalars(is_integer ? 0 : slice);
-  for (std::size_t k = 0; k < values[2]; ++k) {
-    const void* texels = nullptr;
-    if (!is_integer) {
-      reader.read({{0, 0, static_cast<std::int64_t>(k)},
-                   {static_cast<std::int64_t>(values[0]), static_cast<std::int64_t>(values[1]), 1}},
-                  scalars.data());
-      texels = scalars.data();
-    } else if (data.components == 1 && !is_signed(data.type)) {
-      texels = data.values.data() + k * slice * scalar_type_size(data.type);
-    } else {
-      if (is_byte)
-        copy_slice<std::uint8_t>(data, k * slice, slice, bytes);
-      else
-        copy_slice<std::uint16_t>(data, k * slice, slice, bytes);
-      texels = bytes.data();
-    }
-    glTextureSubImage3D(volume_.get(), 0, 0, 0, static_cast<GLint>(k), size[0], size[1], 1, GL_RED, type, texels);
+/// Slices of a grid as texels.
+class SliceReader {
+ public:
+  explicit SliceReader(const PreparedGrid& grid)
+      : data_(grid.data),
+        reader_(grid.data, {grid.scalar_offset, grid.scalar_scale}),
+        is_integer_(scalar_type_size(data_.type) <= 2 && data_.component != kMagnitude),
+        texel_bytes_(is_integer_ ? scalar_type_size(data_.type) : sizeof(float)) {
+    const auto values = data_.value_dimensions();
+    size_ = {static_cast<int>(values[0]), static_cast<int>(values[1]), static_cast<int>(values[2])};
   }
-  if (!is_integer) return;
+
+  bool is_integer() const { return is_integer_; }
+  std::size_t texel_bytes() const { return texel_bytes_; }
+  const std::array<int, 3>& size() const { return size_; }
+  std::size_t slice_texels() const { return static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]); }
+  GLenum type() const { return !is_integer_ ? GL_FLOAT : texel_bytes_ == 1 ? GL_UNSIGNED_BYTE : GL_UNSIGNED_SHORT; }
+
+  /// Valid until the next call.
+  const std::byte* read(int k) {
+    const std::size_t first = static_cast<std::size_t>(k) * slice_texels();
+    if (!is_integer_) {
+      bytes_.resize(slice_texels() * sizeof(float));
+      reader_.read({{0, 0, k}, {size_[0], size_[1], 1}}, reinterpret_cast<float*>(bytes_.data()));
+    } else if (data_.components == 1 && !is_signed(data_.type)) {
+      return data_.values.data() + first * texel_bytes_;
+    } else if (texel_bytes_ == 1) {
+      copy_slice<std::uint8_t>(data_, first, slice_texels(), bytes_);
+    } else {
+      copy_slice<std::uint16_t>(data_, first, slice_texels(), bytes_);
+    }
+    return bytes_.data();
+  }
+
+ private:
+  const GridData& data_;
+  grid::BlockReader reader_;
+  bool is_integer_;
+  std::size_t texel_bytes_;
+  std::array<int, 3> size_{};
+  std::vector<std::byte> bytes_;
+};
+
+/// Four values in each texel; beyond the border that of the border.
+void gather_squares(const std::byte* slice, const std::array<int, 3>& size, std::size_t bytes,
+                    std::vector<std::byte>& to) {
+  const auto columns = static_cast<std::size_t>(size[0]), rows = static_cast<std::size_t>(size[1]);
+  to.resize(4 * columns * rows * bytes);
+  std::byte* out = to.data();
+  for (std::size_t j = 0; j < rows; ++j) {
+    const std::byte* low = slice + j * columns * bytes;
+    const std::byte* high = slice + std::min(j + 1, rows - 1) * columns * bytes;
+    for (std::size_t i = 0; i < columns; ++i) {
+      const std::size_t next = std::min(i + 1, columns - 1);
+      for (const std::byte* from : {low + i * bytes, low + next * bytes, high + i * bytes, high + next * bytes}) {
+        std::memcpy(out, from, bytes);
+        out += bytes;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+GridTexture::GridTexture(const PreparedGrid& grid, const Context& context) : grid_(grid) {
+  SliceReader slices(grid);
+  const auto& size = slices.size();
+  const bool is_byte = slices.texel_bytes() == 1;
+  volume_.make(!slices.is_integer() ? GL_R32F : is_byte ? GL_R8 : GL_R16, size, context);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  for (int k = 0; k < size[2]; ++k)
+    glTextureSubImage3D(volume_.get(), 0, 0, 0, k, size[0], size[1], 1, GL_RED, slices.type(), slices.read(k));
+  if (!slices.is_integer()) return;
   const double largest = is_byte ? 255.0 : 65535.0;
-  const double lowest = is_signed(data.type) ? (is_byte ? -128.0 : -32768.0) : 0.0;
+  const double lowest = is_signed(grid.data.type) ? (is_byte ? -128.0 : -32768.0) : 0.0;
   map_ = {static_cast<float>((lowest - grid.scalar_offset) / grid.scalar_scale),
           static_cast<float>(largest / grid.scalar_scale)};
+}
+
+const Volume* GridTexture::squares(const Context& context) {
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
+  if (4 * volume_.bytes() > kMostBytes) return nullptr;
+  if (has_tried_squares_) return squares_.get() ? &squares_ : nullptr;
+  has_tried_squares_ = true;
+  SliceReader slices(grid_);
+  const auto& size = slices.size();
+  try {
+    squares_.make(!slices.is_integer() ? GL_RGBA32F : slices.texel_bytes() == 1 ? GL_RGBA8 : GL_RGBA16, size, context);
+  } catch (const Error&) {
+    return nullptr;  // the values alone do as well, only slower
+  }
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  std::vector<std::byte> texels;
+  for (int k = 0; k < size[2]; ++k) {
+    gather_squares(slices.read(k), size, slices.texel_bytes(), texels);
+    glTextureSubImage3D(squares_.get(), 0, 0, 0, k, size[0], size[1], 1, GL_RGBA, slices.type(), texels.data());
+  }
+  return &squares_;
 }
 
 }  // namespace tetravox::gl

@@ -36,23 +36,25 @@ struct TexelMap {
 
 /// The component that is drawn, a texel a value, i fastest. What has 8 or 16 bits keeps them (GL_R8, GL_R16; signed
 /// numbers are shifted to begin at 0); everything else becomes the stored scalars themselves (GL_R32F), NaN where a
-/// value is missing. All three can be filtered by the device; a place in grid coordinates is the middle of texel
-/// `place` of point data.
+/// value is missing. All three can be filtered by the device; the middle of texel i is at grid coordinate i of point
+/// data, i + 1/2 of cell data.
 class GridTexture {
  public:
-  /// @throws Error as `Volume::make`. `grid` must outlive the call only.
+  /// `grid` must outlive this. @throws Error as `Volume::make`.
   GridTexture(const PreparedGrid& grid, const Context& context);
 
   const Volume& volume() const { return volume_; }
+  /// The same with four values in each texel: (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1), made when it is first
+  /// asked for. Two fetches are all corners of a cell then, for four times the memory. Null where that is too much.
+  const Volume* squares(const Context& context);
   const TexelMap& map() const { return map_; }
-  std::uint64_t bytes() const { return volume_.bytes(); }
+  std::uint64_t bytes() const { return volume_.bytes() + squares_.bytes(); }
 
  private:
-  Volume volume_;
+  const PreparedGrid& grid_;
+  Volume volume_, squares_;
   TexelMap map_;
+  bool has_tried_squares_ = false;
 };
-
-/// What a value of 8 or 16 bits is as a texel in [0, 1], and back.
-bool keeps_integers(const GridData& grid);
 
 }  // namespace tetravox::gl

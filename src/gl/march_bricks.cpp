@@ -5,7 +5,11 @@
 
 namespace tetravox::gl {
 
-std::uint32_t pack_plan(const scene::BrickPlan& plan, bool has_missing) {
+std::uint32_t pack_plan(scene::BrickPlan plan, bool has_missing) {
+  if (plan.stride > 0) {
+    plan.stride = static_cast<std::uint8_t>(plan.stride << plan.level);
+    plan.level = 0;
+  }
   return plan.level | static_cast<std::uint32_t>(plan.stride) << 8 | static_cast<std::uint32_t>(plan.is_curved) << 16 |
          static_cast<std::uint32_t>(plan.is_gentle) << 17 | static_cast<std::uint32_t>(has_missing) << 18;
 }

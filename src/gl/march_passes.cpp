@@ -34,7 +34,8 @@ std::string integrator_of(const MarchKind& kind) {
 
 std::string key_of(const MarchKind& kind) {
   std::string key = name_of(kind.integrator);
-  for (const bool flag : {kind.is_uneven, kind.is_constant, kind.is_nearest, kind.has_nodes, kind.has_samples})
+  for (const bool flag :
+       {kind.is_uneven, kind.is_constant, kind.is_nearest, kind.has_nodes, kind.has_squares, kind.has_samples})
     key += flag ? '1' : '0';
   return key;
 }
@@ -51,20 +52,34 @@ ShaderRecipe recipe_of_march(const MarchKind& kind) {
   define(kind.has_nodes, "HAS_NODES");
   recipe.includes.emplace_back("marcher.glsl", marcher_file(kind));
   recipe.includes.emplace_back("integrator.glsl", integrator_of(kind));
-  recipe.includes.emplace_back("nodes.glsl", kind.has_nodes ? "nodes_of_buffer.glsl" : "nodes_of_texture.glsl");
+  const char* nodes = "nodes_of_texture.glsl";
+  if (kind.has_nodes) nodes = "nodes_of_buffer.glsl";
+  if (kind.has_squares) nodes = "nodes_of_squares.glsl";
+  recipe.includes.emplace_back("nodes.glsl", nodes);
   return recipe;
 }
 
 std::vector<MarchKind> march_kinds() {
   std::vector<MarchKind> kinds;
   for (const bool is_uneven : {false, true}) {
-    kinds.push_back({Integrator::kAntiderivative, is_uneven, true, false, false, false});
-    kinds.push_back({Integrator::kAntiderivative, is_uneven, true, true, false, false});
+    for (const bool is_nearest : {false, true}) {
+      MarchKind kind;
+      kind.is_uneven = is_uneven;
+      kind.is_constant = true;
+      kind.is_nearest = is_nearest;
+      kinds.push_back(kind);
+    }
     for (const Integrator integrator :
          {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kPost, Integrator::kPre})
       for (const bool has_nodes : {false, true})
-        for (const bool has_samples : {false, true})
-          kinds.push_back({integrator, is_uneven, false, false, has_nodes, has_samples});
+        for (const bool has_squares : {false, true})
+          for (const bool has_samples : {false, true}) {
+            MarchKind kind{integrator, is_uneven};
+            kind.has_nodes = has_nodes;
+            kind.has_squares = has_squares;
+            kind.has_samples = has_samples;
+            if (!has_squares || (!has_nodes && integrator != Integrator::kPre)) kinds.push_back(kind);
+          }
   }
   return kinds;
 }

@@ -24,6 +24,7 @@ struct MarchKind {
   bool is_constant = false;  ///< one value a cell
   bool is_nearest = false;   ///< of these: eighths of cells, each with the value of its corner
   bool has_nodes = false;    ///< lattices of filtered values instead of the grid's own
+  bool has_squares = false;  ///< four values in each texel
   bool has_samples = false;  ///< a fixed rate, counted on from the eye
 };
 

@@ -26,8 +26,14 @@ bool is_over(vec4 sum) {
   return frame.use_early_ray_termination != 0 && (sum.a < march.negligible || is_settled(sum));
 }
 
+// Rays side by side travel together: blocks of 4 x 2 pixels, which is a vector of eight on many devices.
+ivec2 pixel_of(uvec3 group, uint index) {
+  uvec2 inside = uvec2((index & 3u) + ((index >> 3u) & 1u) * 4u, ((index >> 2u) & 1u) + (index >> 4u) * 2u);
+  return ivec2(8u * group.xy + inside);
+}
+
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = pixel_of(gl_WorkGroupID, gl_LocalInvocationIndex);
   if (pixel.x >= frame.width || pixel.y >= frame.height) return;
   uint place = uint(pixel.y * frame.width + pixel.x);
   GridRay ray = grid_ray_of(pixel);

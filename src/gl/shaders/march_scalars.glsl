@@ -63,23 +63,12 @@ void march_strides(GridRay ray, Lattice l, float stride, float z, float leave, i
   float wanted = march.sample_distance > 0.0 ? depth * ray.world_per_z / march.sample_distance
                                              : depth * length(l.direction) / stride;
   float steps = clamp(ceil(wanted), 1.0, 1e5), share = depth / steps;
-  Segment segment;
-  segment.length = share * ray.world_per_z;
-  segment.scalar_front = sample_lattice(l, z);
-  Front front = front_at(segment.scalar_front);
-  float number = 0.0;
-  // Loops within loops: what only some segments need is off the way of all others, which matters to devices that execute
-  // both sides of every branch.
-  while (number < steps) {
-    bool is_plain = true;
-    while (is_plain && number < steps) {
-      number += 1.0;
-      segment.scalar_back = sample_lattice(l, z + number * share);
-      is_plain = integrate_plainly(segment, front, sum);
-      segment.scalar_front = is_plain ? segment.scalar_back : segment.scalar_front;
-    }
-    if (!is_plain) integrate(segment, front, sum);
-    segment.scalar_front = segment.scalar_back;
+  float scalar_front = sample_lattice(l, z);
+  Front front = front_at(scalar_front);
+  for (float number = 1.0; number <= steps; number += 1.0) {
+    float scalar_back = sample_lattice(l, z + number * share);
+    integrate(Segment(scalar_front, scalar_back, share * ray.world_per_z), front, sum);
+    scalar_front = scalar_back;
   }
   segments += uint(steps);
 }
@@ -89,45 +78,32 @@ void march_cells(GridRay ray, Lattice l, uvec4 plan, float z, float leave, inout
   float steepness = (plan.x & kIsCurved) != 0u ? uintBitsToFloat(plan.y) : 0.0;
   CellWalk walk = enter_lattice(ray, l, z, leave);
   Front front = front_at(0.0);
-  Segment segment;
-  vec4 cubic;
-  float number = 1.0, pieces = 0.0, cell_back = 0.0;
   bool is_fresh = true;
-  while (walk.front < leave || number < pieces) {
-    bool is_plain = true;
-    while (is_plain && (walk.front < leave || number < pieces)) {
-      if (number >= pieces) {
-        vec4 low, high;
-        fetch_corners(l, walk.cell, low, high);
-        float back = back_of(walk);
-        cubic = make_cubic(low, high, place_in_cell(ray, l, walk.cell, walk.front),
-                           place_in_cell(ray, l, walk.cell, back));
-        float world = (back - walk.front) * ray.world_per_z;
-        float all = (low.x + low.y + low.z + low.w) + (high.x + high.y + high.z + high.w);
-        if (is_missing(all)) {
-          // A cell with a corner that is missing is transparent; behind it the ray sets out anew.
-          cubic = vec4(0.0);
-          world = 0.0;
-          is_fresh = true;
-        } else if (is_fresh) {
-          segment.scalar_front = cubic.x;
-          front = front_at(cubic.x);
-          is_fresh = false;
-        }
-        cell_back = cubic.x + cubic.y + cubic.z + cubic.w;
-        pieces = count_pieces(cubic, steepness, sum.a, cell_back);
-        number = 0.0;
-        segment.length = world / pieces;
-        leave_cell(ray, l, back, walk);
-        ++segments;
+  float scalar_front = 0.0;
+  while (walk.front < leave) {
+    vec4 low, high;
+    fetch_corners(l, walk.cell, low, high);
+    float back = back_of(walk), world = (back - walk.front) * ray.world_per_z;
+    vec4 cubic = make_cubic(low, high, place_in_cell(ray, l, walk.cell, walk.front),
+                            place_in_cell(ray, l, walk.cell, back));
+    float pieces = 0.0, cell_back = cubic.x + cubic.y + cubic.z + cubic.w;
+    if (is_missing((low.x + low.y + low.z + low.w) + (high.x + high.y + high.z + high.w))) {
+      is_fresh = true;  // a cell with a corner that is missing is transparent; behind it the ray sets out anew
+    } else {
+      if (is_fresh) {
+        scalar_front = cubic.x;
+        front = front_at(scalar_front);
+        is_fresh = false;
       }
-      number += 1.0;
-      segment.scalar_back = number >= pieces ? cell_back : eval_cubic(cubic, number / pieces);
-      is_plain = !(segment.length > 0.0) || integrate_plainly(segment, front, sum);
-      segment.scalar_front = is_plain ? segment.scalar_back : segment.scalar_front;
+      pieces = count_pieces(cubic, steepness, sum.a, cell_back);
     }
-    if (!is_plain) integrate(segment, front, sum);
-    segment.scalar_front = segment.scalar_back;
+    for (float number = 1.0; number <= pieces; number += 1.0) {
+      float scalar_back = number >= pieces ? cell_back : eval_cubic(cubic, number / pieces);
+      integrate(Segment(scalar_front, scalar_back, world / pieces), front, sum);
+      scalar_front = scalar_back;
+    }
+    leave_cell(ray, l, back, walk);
+    ++segments;
   }
 }
 

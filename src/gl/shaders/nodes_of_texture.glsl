@@ -7,8 +7,7 @@ float fetch_value(ivec3 at) { return march.texel_offset + march.texel_scale * te
 // Corners of a cell: lower or upper (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
 void fetch_corners(Lattice l, ivec3 cell, out vec4 low, out vec4 high) {
   ivec3 at = l.first + (cell << l.level);
-  int one = 1 << l.level;
-  ivec3 to = at + one;
+  ivec3 to = at + 1;  // of larger cells, which are constant, any corner is as good
   low = vec4(texelFetch(values, at, 0).x, texelFetch(values, ivec3(to.x, at.yz), 0).x,
              texelFetch(values, ivec3(at.x, to.y, at.z), 0).x, texelFetch(values, ivec3(to.xy, at.z), 0).x);
   high = vec4(texelFetch(values, ivec3(at.xy, to.z), 0).x, texelFetch(values, ivec3(to.x, at.y, to.z), 0).x,

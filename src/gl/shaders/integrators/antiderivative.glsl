@@ -105,42 +105,21 @@ void integrate_exactly(Segment segment, inout vec4 sum) {
   }
 }
 
-// What a segment between two points is by the table, and whether that is doubtful.
-vec4 look_up_segment(Segment segment, Front before, Front back, float visible, out bool beyond, out bool is_doubtful) {
-  vec4 integrals = integrate_between(before, back, segment.length);
-  float nodes = abs(back.position - before.position);
-  beyond = tables.covers_data == 0 && (is_outside(before.position) || is_outside(back.position));
-  float weight = integrals.x * integrals.x * visible;
-  is_doubtful = beyond || integrals.x > 0.25 ||
-                weight * min(1.0, nodes * tables.largest_color_slope) > tables.split_threshold;
-  return integrals;
-}
-
-// Integrates a segment for which the table alone serves; otherwise does nothing and says so.
-bool integrate_plainly(Segment segment, inout Front front, inout vec4 sum) {
-  Front back = front_at(segment.scalar_back);
-  bool beyond, is_doubtful;
-  vec4 integrals = look_up_segment(segment, front, back, sum.a, beyond, is_doubtful);
-  if (tables.has_coarse != 0) is_doubtful = is_doubtful || is_coarse(front.position) || is_coarse(back.position);
-  if (is_doubtful) return false;
-  float visible = sum.a * (1.0 + integrals.x * (-0.5 + integrals.x * (1.0 / 6.0 + integrals.x * (-1.0 / 24.0 + integrals.x * (1.0 / 120.0)))));
-  sum.rgb += visible * integrals.yzw;
-  sum.a -= visible * integrals.x;
-  front = back;
-  return true;
-}
-
 void integrate(Segment segment, inout Front front, inout vec4 sum) {
   Front before = front;
   Front back = front_at(segment.scalar_back);
   front = back;
-  bool beyond, is_doubtful;
-  vec4 integrals = look_up_segment(segment, before, back, sum.a, beyond, is_doubtful);
+  vec4 integrals = integrate_between(before, back, segment.length);
+  float nodes = abs(back.position - before.position);
+  bool beyond = tables.covers_data == 0 && (is_outside(before.position) || is_outside(back.position));
   bool coarse = tables.has_coarse != 0 && (is_coarse(before.position) || is_coarse(back.position));
+  float weight = integrals.x * integrals.x * sum.a;
+  bool is_doubtful = beyond || integrals.x > 0.25 ||
+                     weight * min(1.0, nodes * tables.largest_color_slope) > tables.split_threshold;
   if (is_doubtful && !coarse) {
     // By the colours that the segment really passes.
     float change = min(1.0, abs(variation_at(back.position) - variation_at(before.position)));
-    is_doubtful = beyond || integrals.x * integrals.x * sum.a * change > tables.split_threshold;
+    is_doubtful = beyond || weight * change > tables.split_threshold;
     coarse = is_doubtful && tables.has_coarse != 0 && passes_coarse(before.position, back.position);
   }
   if (coarse)
