@@ -8,68 +8,14 @@
 namespace tetravox::cpu {
 namespace {
 
-/// Weights for each of `parts` places in a cell, [parts][2 * radius].
-std::vector<float> weight_table(const grid::SeparableKernel& kernel, int parts) {
-  std::vector<float> table;
-  for (int part = 0; part < parts; ++part)
-    for (const double weight : grid::weights_at(kernel, static_cast<double>(part) / parts))
-      table.push_back(static_cast<float>(weight));
-  return table;
-}
-
-/// The same for the derivative.
-std::vector<float> derivative_table(const grid::SeparableKernel& kernel, int parts) {
-  const int radius = kernel.radius();
-  std::vector<float> table;
-  for (int part = 0; part < parts; ++part) {
-    const double phase = static_cast<double>(part) / parts;
-    for (int i = 1 - radius; i <= radius; ++i) table.push_back(static_cast<float>(kernel.eval_derivative(phase - i)));
-  }
-  return table;
-}
-
-/// Convolves rows of `in` along one axis: `count` places `stride` apart become (cells * parts + 1). The other places of
-/// the block are [outer][inner], `inner` adjacent ones at a time.
-struct Convolution {
-  std::int64_t outer, count, inner;
-  std::int64_t cells;
-  int parts, taps;
-};
-void convolve_axis(const Convolution& c, const std::vector<float>& weights, const std::vector<float>& in,
-                   std::vector<float>& out) {
-  const std::int64_t nodes = c.cells * c.parts + 1;
-  out.assign(static_cast<std::size_t>(c.outer * nodes * c.inner), 0.0f);
-  for (std::int64_t o = 0; o < c.outer; ++o)
-    for (std::int64_t node = 0; node < nodes; ++node) {
-      const float* weight = weights.data() + node % c.parts * c.taps;
-      float* to = out.data() + (o * nodes + node) * c.inner;
-      for (int tap = 0; tap < c.taps; ++tap) {
-        if (weight[tap] == 0.0f) continue;  // a missing value out of reach is none
-        const float* from = in.data() + (o * c.count + node / c.parts + tap) * c.inner;
-        for (std::int64_t i = 0; i < c.inner; ++i) to[i] += weight[tap] * from[i];
-      }
-    }
+scene::KernelField kernel_field(const LatticeField& field) {
+  return {field.reader, field.padding, field.kernel, field.most_parts, field.allowed_rate};
 }
 
 grid::BrickBox box_of(const PreparedGrid& grid, std::uint32_t brick) {
   const auto& counts = grid.bricks.counts;
   return grid::box_of_brick(grid.data.shape,
                             {brick % counts[0], brick / counts[0] % counts[1], brick / counts[0] / counts[1]});
-}
-
-/// Largest second difference along an axis of nodes [z][y][x].
-float largest_bend(const std::vector<float>& nodes, const std::array<std::int64_t, 3>& counts, int axis) {
-  const std::array<std::int64_t, 3> strides{1, counts[0], counts[0] * counts[1]};
-  const std::int64_t along = strides[axis], size = counts[0] * counts[1] * counts[2];
-  float largest = 0.0f;
-  for (std::int64_t i = along; i + along < size; ++i) {
-    const std::int64_t at = i / along % counts[axis];
-    if (at == 0 || at + 1 == counts[axis]) continue;
-    largest = std::max(largest,
-                       std::abs(nodes[static_cast<std::size_t>(i - along)] - 2.0f * nodes[static_cast<std::size_t>(i)] +
-                                nodes[static_cast<std::size_t>(i + along)]));
-  }
-  return largest;
 }
 
 /// Nodes behind the last one that a ray at the very end of the brick may look at.
@@ -171,36 +117,20 @@ void BrickLattice::spread_values(MarchBrick& brick) {
             ((k + 1) / 2 * block_.count[1] + (j + 1) / 2) * block_.count[0] + (i + 1) / 2)]);
 }
 
-/// Reads what the kernel reaches from the brick.
-void BrickLattice::read_margin(const LatticeField& field) {
-  const int radius = field.kernel->radius();
-  for (int axis = 0; axis < 3; ++axis) {
-    margin_block_.first[axis] = block_.first[axis] - radius + 1 + field.padding;
-    margin_block_.count[axis] = block_.count[axis] + 2 * radius;
-  }
-  margin_.resize(static_cast<std::size_t>(margin_block_.size()));
-  field.reader->read(margin_block_, margin_.data());
-}
-
-/// Convolves the margin; the cells of the brick are divided into `parts` along each axis.
-void BrickLattice::divide_cells(const LatticeField& field, int parts, MarchBrick& brick) {
+/// Divides the cells of the brick into `parts` along each axis.
+void BrickLattice::divide_cells(int parts, MarchBrick& brick) {
   for (int axis = 0; axis < 3; ++axis) brick.cells[axis] = static_cast<std::int32_t>(block_.count[axis] * parts);
   if (brick.is_uneven) place_planes(brick, parts);
-  const std::vector<float> weights = weight_table(*field.kernel, parts);
-  convolve({&weights, &weights, &weights}, parts, values_);
 }
 
 /// Returns into how many parts the cells are divided.
 int BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick, int least_parts) {
-  read_margin(field);
-  divide_cells(field, 1, brick);
-  // The distance of a smooth field from its lattice falls with the square of the number of parts. It has the same sign
-  // for many cells on end, so that it adds up where chords' errors do not.
-  constexpr float kAddsUp = 4.0f;
-  const float rate = kAddsUp * measure_bend(brick) * brick.steepness;
-  int parts = std::max(brick.has_missing ? 2 : 1, least_parts);  // in the middle of a cell everything in reach counts
-  while (parts < field.most_parts && rate > field.allowed_rate * static_cast<float>(parts * parts)) parts *= 2;
-  if (parts > 1) divide_cells(field, parts, brick);
+  const scene::KernelField of_kernel = kernel_field(field);
+  filtered_.read(of_kernel, block_);
+  const int least =
+      std::max(brick.has_missing ? 2 : 1, least_parts);  // in the middle of a cell everything in reach counts
+  const int parts = filtered_.divide_as_asked(of_kernel, brick.steepness, least, values_);
+  divide_cells(parts, brick);
   if (field.gradients == GradientSource::kKernel) filter_gradients(field, parts, brick);
   for (int axis = 0; axis < 3; ++axis) block_.count[axis] = brick.cells[axis] + 1;
   return parts;
@@ -208,11 +138,8 @@ int BrickLattice::filter_values(const LatticeField& field, MarchBrick& brick, in
 
 /// Gradients at the nodes of the lattice: the derivative along one axis, the kernel itself along the others.
 void BrickLattice::filter_gradients(const LatticeField& field, int parts, const MarchBrick& brick) {
-  const std::vector<float> weights = weight_table(*field.kernel, parts);
-  const std::vector<float> slopes = derivative_table(*field.kernel, parts);
   for (int axis = 0; axis < 3; ++axis) {
-    const auto weights_of = [&](int i) -> const std::vector<float>& { return i == axis ? slopes : weights; };
-    convolve({&weights_of(0), &weights_of(1), &weights_of(2)}, parts, coarse_gradients_);
+    filtered_.differentiate(kernel_field(field), parts, axis, coarse_gradients_);
     gradients_.resize(4 * coarse_gradients_.size());
     for (std::size_t i = 0; i < coarse_gradients_.size(); ++i) gradients_[4 * i + axis] = coarse_gradients_[i];
     if (brick.is_uneven) rescale_gradients(axis, parts);
@@ -247,41 +174,17 @@ void BrickLattice::fill_gradients(const LatticeField& field, const grid::Block& 
 
 /// Pre-classification with a kernel: it is the densities of the values that are filtered, channel by channel.
 void BrickLattice::filter_densities(const LatticeField& field, MarchBrick& brick) {
-  constexpr int kParts = 4;
-  read_margin(field);
-  const std::vector<float> scalars = margin_;
+  const scene::KernelField of_kernel = kernel_field(field);
+  filtered_.read(of_kernel, block_);
+  divide_cells(scene::kDensityParts, brick);
+  const std::vector<float> scalars = filtered_.margin();
   for (std::size_t channel = 0; channel < 4; ++channel) {
     for (std::size_t i = 0; i < scalars.size(); ++i)
-      margin_[i] = optics::eval_densities(*field.points, scalars[i])[channel];
-    divide_cells(field, kParts, brick);
+      filtered_.margin()[i] = optics::eval_densities(*field.points, scalars[i])[channel];
+    filtered_.divide(of_kernel, scene::kDensityParts, values_);
     if (channel == 0) records_.assign(4 * (values_.size() + nodes_beyond(brick)), 0.0f);
     for (std::size_t i = 0; i < values_.size(); ++i) records_[4 * i + channel] = values_[i];
   }
-}
-
-/// `weights`: for each axis, [parts][taps].
-void BrickLattice::convolve(const std::array<const std::vector<float>*, 3>& weights, int parts,
-                            std::vector<float>& nodes) {
-  const int taps = static_cast<int>(weights[0]->size()) / parts;
-  const auto& in = margin_block_.count;
-  const std::int64_t nx = block_.count[0] * parts + 1, ny = block_.count[1] * parts + 1;
-  convolve_axis({in[2] * in[1], in[0], 1, block_.count[0], parts, taps}, *weights[0], margin_, along_x_);
-  convolve_axis({in[2], in[1], nx, block_.count[1], parts, taps}, *weights[1], along_x_, along_y_);
-  convolve_axis({1, in[2], nx * ny, block_.count[2], parts, taps}, *weights[2], along_y_, nodes);
-}
-
-/// Estimate of the distance of a field from the lattice of its nodes, by second differences: of the nodes, or of the
-/// values in reach along an axis with too few of them.
-float BrickLattice::measure_bend(const MarchBrick& brick) const {
-  float bend = 0.0f;
-  for (int axis = 0; axis < 3; ++axis) {
-    constexpr std::int32_t kFewest = 3;
-    const bool has_nodes = brick.cells[axis] >= kFewest;
-    bend +=
-        0.125f * (has_nodes ? largest_bend(values_, {brick.cells[0] + 1, brick.cells[1] + 1, brick.cells[2] + 1}, axis)
-                            : largest_bend(margin_, margin_block_.count, axis));
-  }
-  return bend;
 }
 
 void BrickLattice::fill_records(const Kernels& kernels, const MarchBrick& brick) {

@@ -8,6 +8,7 @@
 #include "src/grid/separable_kernel.h"
 #include "src/grid/values.h"
 #include "src/optics/antiderivative_table.h"
+#include "src/scene/kernel_lattice.h"
 #include "tetravox/grid.h"
 
 #include <array>
@@ -48,12 +49,9 @@ class BrickLattice {
  private:
   void place_planes(MarchBrick& brick, int parts);
   void spread_values(MarchBrick& brick);
-  void read_margin(const LatticeField& field);
-  void divide_cells(const LatticeField& field, int parts, MarchBrick& brick);
+  void divide_cells(int parts, MarchBrick& brick);
   int filter_values(const LatticeField& field, MarchBrick& brick, int least_parts);
   void filter_densities(const LatticeField& field, MarchBrick& brick);
-  void convolve(const std::array<const std::vector<float>*, 3>& weights, int parts, std::vector<float>& nodes);
-  float measure_bend(const MarchBrick& brick) const;
   void fill_gradients(const LatticeField& field, const grid::Block& values, int parts, MarchBrick& brick);
   void filter_gradients(const LatticeField& field, int parts, const MarchBrick& brick);
   void rescale_gradients(int axis, int parts);
@@ -64,9 +62,8 @@ class BrickLattice {
   std::int64_t stride_ = 1;
   std::vector<float> values_, records_;
   std::array<std::vector<float>, 3> cell_planes_, planes_;  ///< of an uneven brick: as it is, and divided
-  // For filtering: values with a margin, and what becomes of them axis by axis.
-  grid::Block margin_block_;
-  std::vector<float> margin_, along_x_, along_y_;
+  scene::KernelLattice filtered_;
+  std::vector<float> margin_;  // scratch
   std::vector<float> gradients_, coarse_gradients_;
 };
 

@@ -1,6 +1,6 @@
 #include "src/cpu/domain.h"
 
-#include "src/cpu/brick_plan.h"
+#include "src/scene/brick_plan.h"
 #include "src/scene/preintegration_cache.h"
 #include "tetravox/error.h"
 
@@ -142,7 +142,7 @@ void require_domain_settings(const Domain& domain, const RenderSettings& setting
 
 void build_occupancy(const Domain& domain, double tolerance, double diagonal, TableOccupancy& occupancy) {
   if (!domain.is_table() || occupancy.tolerance == tolerance) return;
-  const float least = allowed_haze_of(tolerance, diagonal);
+  const float least = scene::allowed_haze_of(tolerance, diagonal);
   std::array<std::size_t, kMostVariables> sizes{0, 0, 0};
   for (int axis = 0; axis < domain.count; ++axis) sizes[axis] = static_cast<std::size_t>(domain.axes[axis].last) + 1;
   const std::size_t row = sizes[0] + 1, slice = row * (sizes[1] + 1);
@@ -203,9 +203,9 @@ DomainFunction make_domain_function(const Domain& domain, const TableOccupancy& 
     function.colors = &domain.colors;
     function.extinctions = &domain.extinctions;
   }
-  function.haze = allowed_haze_of(tolerance, diagonal);
-  function.allowed_rate = allowed_rate_of(tolerance, diagonal);
-  function.most_pieces = most_pieces_of(tolerance);
+  function.haze = scene::allowed_haze_of(tolerance, diagonal);
+  function.allowed_rate = scene::allowed_rate_of(tolerance, diagonal);
+  function.most_pieces = scene::most_pieces_of(tolerance);
   return function;
 }
 

@@ -42,8 +42,8 @@ void GridDomain::set_colors(std::size_t other, const OpticalFunction& colors, co
 void GridDomain::prepare(const Filter& filter, double tolerance, double diagonal) {
   build_occupancy(domain_, tolerance, diagonal, occupancy_);
   for (Other& other : others_)
-    if (other.field.kernel ? other.field.filter != filter : wants_kernel(filter))
-      other.field = make_filtered_field(*other.grid, filter);
+    if (other.field.kernel ? other.field.filter != filter : scene::wants_kernel(filter))
+      other.field = scene::make_filtered_field(*other.grid, filter);
 }
 
 std::vector<LatticeField> GridDomain::make_fields(const LatticeField& field) const {
@@ -57,7 +57,7 @@ std::vector<LatticeField> GridDomain::make_fields(const LatticeField& field) con
   return fields;
 }
 
-IsSeen GridDomain::find_seen() const {
+scene::IsSeen GridDomain::find_seen() const {
   return [this](std::size_t brick, const ValueRange& range) {
     constexpr double kAny = std::numeric_limits<double>::max();
     std::array<ValueRange, kMostVariables> ranges;
@@ -65,7 +65,7 @@ IsSeen GridDomain::find_seen() const {
     for (int axis = 0; axis < domain_.count; ++axis)
       if (domain_.axes[axis].source == DomainAxis::Source::kScalar) ranges[axis] = range;
     for (const Other& other : others_) {
-      PlanSources source;
+      scene::PlanSources source;
       source.grid = &other.drawn();
       source.field = &other.field;
       ranges[other.axis] = range_of(source, brick);

@@ -3,11 +3,11 @@
 /// What functions of several variables ask of a grid beside the value drawn.
 
 #include "src/cpu/brick_lattice.h"
-#include "src/cpu/brick_plan.h"
 #include "src/cpu/domain.h"
-#include "src/cpu/filtered_field.h"
 #include "src/grid/frame.h"
 #include "src/grid/values.h"
+#include "src/scene/brick_plan.h"
+#include "src/scene/filtered_field.h"
 #include "tetravox/grid.h"
 #include "tetravox/multidimensional.h"
 
@@ -49,7 +49,7 @@ class GridDomain {
   /// How lattices of the further fields are filled; `field`: how those of the value are.
   std::vector<LatticeField> make_fields(const LatticeField& field) const;
   /// Of a table: whether it absorbs anywhere in what occurs in a brick, whatever the gradient. Views this.
-  IsSeen find_seen() const;
+  scene::IsSeen find_seen() const;
 
   /// What a brick is, and what its lattices are filled from.
   struct Filling {
@@ -75,7 +75,7 @@ class GridDomain {
     std::size_t axis;
     const PreparedGrid* grid;
     grid::BlockReader reader;
-    FilteredField field;
+    scene::FilteredField field;
   };
 
   void set(Domain domain);

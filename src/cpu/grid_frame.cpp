@@ -81,15 +81,7 @@ std::array<std::uint32_t, 3> position_of(const PreparedGrid& grid, std::uint32_t
 std::vector<std::uint32_t> order_bricks(const PreparedGrid& grid, const grid::GridFrame& frame,
                                         const std::vector<std::uint32_t>& bricks, const scene::GridView& view) {
   const auto& counts = grid.bricks.counts;
-  std::array<std::int64_t, 3> nearest{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t last = counts[axis] - 1;
-    if (view.camera.is_orthographic)
-      nearest[axis] = view.eye[axis] > 0.0 ? 0 : last;
-    else
-      while (nearest[axis] < last && frame.plane(axis, (nearest[axis] + 1) * kBrickCells) <= view.eye[axis])
-        ++nearest[axis];
-  }
+  const std::array<std::int64_t, 3> nearest = scene::nearest_brick(grid, frame, view);
   const auto distance = [&](std::uint32_t brick) {
     const auto at = position_of(grid, brick);
     std::size_t sum = 0;
@@ -142,31 +134,6 @@ BrickBins bin_bricks(const PreparedGrid& grid, const grid::GridFrame& frame, con
       bins.bricks[next[tile]++] = {ordered[i], bounds};
     });
   return bins;
-}
-
-double mean_spacing(const grid::GridFrame& frame) {
-  const auto& m = frame.world_from_grid;
-  return std::cbrt(std::abs(m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
-                            m[2] * (m[3] * m[7] - m[4] * m[6])));
-}
-
-double longest_cell_diagonal(const grid::GridFrame& frame) {
-  std::array<double, 3> sides{1.0, 1.0, 1.0};  // of the largest cell, grid coordinates
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<float>& planes = frame.planes[axis];
-    for (std::size_t i = 0; i + 1 < planes.size(); ++i)
-      sides[axis] = std::max(i == 0 ? 0.0 : sides[axis], static_cast<double>(planes[i + 1]) - planes[i]);
-  }
-  double longest = 0.0;
-  for (const double y : {-1.0, 1.0})
-    for (const double z : {-1.0, 1.0}) {
-      const auto& m = frame.world_from_grid;
-      const auto along = [&](int row) {
-        return m[3 * row] * sides[0] + m[3 * row + 1] * y * sides[1] + m[3 * row + 2] * z * sides[2];
-      };
-      longest = std::max(longest, std::hypot(along(0), along(1), along(2)));
-    }
-  return longest;
 }
 
 }  // namespace tetravox::cpu

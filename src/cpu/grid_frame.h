@@ -14,12 +14,6 @@
 
 namespace tetravox::cpu {
 
-/// World length of a voxel: of the cube with its volume.
-double mean_spacing(const grid::GridFrame& frame);
-
-/// World length of the longest diagonal of a cell.
-double longest_cell_diagonal(const grid::GridFrame& frame);
-
 /// A brick with the pixels of a tile that may see it.
 struct BinnedBrick {
   std::uint32_t brick = 0;

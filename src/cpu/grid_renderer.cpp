@@ -1,7 +1,5 @@
 #include "src/cpu/brick_lattice.h"
-#include "src/cpu/brick_plan.h"
 #include "src/cpu/clip_intervals.h"
-#include "src/cpu/filtered_field.h"
 #include "src/cpu/frame_renderers.h"
 #include "src/cpu/grid_domain.h"
 #include "src/cpu/grid_frame.h"
@@ -14,6 +12,8 @@
 #include "src/optics/extinction_integral.h"
 #include "src/optics/steepness_table.h"
 #include "src/optics/transparency_table.h"
+#include "src/scene/brick_plan.h"
+#include "src/scene/filtered_field.h"
 #include "src/scene/preintegration_cache.h"
 #include "src/support/threads.h"
 #include "src/support/timer.h"
@@ -169,9 +169,10 @@ class GridRenderer final : public scene::FrameRenderer {
   }
 
   std::uint64_t bytes() const override {
-    return antiderivative_.bytes() + control_points_.bytes() + extinction_.bytes() + plans_.size() * sizeof(BrickPlan) +
-           (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_ +
-           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() + preintegration_.bytes();
+    return antiderivative_.bytes() + control_points_.bytes() + extinction_.bytes() +
+           plans_.size() * sizeof(scene::BrickPlan) + (visible_.size() + field_.coefficients.size()) * sizeof(float) +
+           frame_bytes_ + centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() +
+           preintegration_.bytes();
   }
 
   std::vector<Source> sources() const override { return {Source::kMarch}; }
@@ -181,7 +182,7 @@ class GridRenderer final : public scene::FrameRenderer {
   optics::ScalarMap scalar_map() const { return {grid_.scalar_offset, grid_.scalar_scale}; }
   bool is_constant(const RenderSettings& settings) const {
     const bool is_cell = grid_.data.association == Association::kCell;
-    return settings.filter.kind == FilterKind::kNearest || (is_cell && !wants_kernel(settings.filter));
+    return settings.filter.kind == FilterKind::kNearest || (is_cell && !scene::wants_kernel(settings.filter));
   }
   const PreparedGrid& drawn() const { return field_.middles ? *field_.middles : grid_; }
   void prepare_filter(const RenderSettings& settings);
@@ -196,8 +197,8 @@ class GridRenderer final : public scene::FrameRenderer {
   Marches choose_kernels(const Kernels& kernels, const RenderSettings& settings, bool has_effects) const;
   void draw(const Pass& pass, const scene::FrameContext& context, Image& image, RenderStatistics& statistics);
   LatticeField lattice_field(const RenderSettings& settings, const Kernels& kernels) const;
-  PlanSources plan_sources(const RenderSettings& settings) const;
-  PlanSettings plan_settings(const RenderSettings& settings) const;
+  scene::PlanSources plan_sources(const RenderSettings& settings) const;
+  scene::PlanSettings plan_settings(const RenderSettings& settings) const;
   void plan(const RenderSettings& settings);
   MarchJob make_job(const RenderSettings& settings, const IntegratorTables& tables) const;
   std::uint64_t draw_brick(const FrameParts& frame, const TilePlace& place, const BinnedBrick& binned,
@@ -207,7 +208,7 @@ class GridRenderer final : public scene::FrameRenderer {
   const PreparedGrid& grid_;
   grid::GridFrame frame_;
   grid::BlockReader reader_;
-  FilteredField field_;
+  scene::FilteredField field_;
   OpticalFunction function_;
   GridDomain domain_;
   optics::AntiderivativeTable antiderivative_;
@@ -220,8 +221,8 @@ class GridRenderer final : public scene::FrameRenderer {
   ShadowCache shadows_;
   scene::PreintegrationCache preintegration_;
   bool is_planned_ = false;
-  PlanSettings planned_for_;
-  std::vector<BrickPlan> plans_;
+  scene::PlanSettings planned_for_;
+  std::vector<scene::BrickPlan> plans_;
   std::vector<std::uint32_t> visible_;
   std::uint64_t frame_bytes_ = 0;
 };
@@ -230,12 +231,12 @@ LatticeField GridRenderer::lattice_field(const RenderSettings& settings, const K
   LatticeField field;
   field.kernels = &kernels;
   field.reader = field_.reader ? field_.reader.get() : &reader_;
-  field.padding = field_.coefficients.empty() ? 0 : FilteredField::kMargin;
+  field.padding = field_.coefficients.empty() ? 0 : scene::FilteredField::kMargin;
   field.kernel = field_.kernel.get();
   field.points = settings.integrator == Integrator::kPre && !is_constant(settings) ? &control_points_ : nullptr;
   field.is_constant = is_constant(settings);
   field.is_nearest = field.is_constant && grid_.data.association == Association::kPoint;
-  field.allowed_rate = allowed_rate_of(settings.tolerance, diagonal());
+  field.allowed_rate = scene::allowed_rate_of(settings.tolerance, diagonal());
   field.gradients = choose_gradients(settings);
   field.differences = {&reader_, &frame_, drawn().data.value_dimensions(),
                        drawn().data.association == Association::kCell};
@@ -285,9 +286,9 @@ void GridRenderer::trace(const RenderSettings& settings, const scene::FrameConte
   Illustration& illustration = frame.illustration;
   if (settings.lighting.shadows != ShadowKind::kExact || illustration.lights.empty()) return;
   // Where nobody asks for gradients, larger cells will do.
-  PlanSettings plan = plan_settings(settings);
+  scene::PlanSettings plan = plan_settings(settings);
   plan.wants_gradients = settings.opacity_weight == OpacityWeight::kGradient;
-  illustration.shadow_plans = plan_bricks(frame.grid.sources, plan);
+  illustration.shadow_plans = scene::plan_bricks(frame.grid.sources, plan);
   PlannedGrid grid = frame.grid;
   grid.plans = illustration.shadow_plans;
   if (!plan.wants_gradients) grid.field.gradients = GradientSource::kNone;
@@ -309,9 +310,9 @@ ShadowedBody GridRenderer::shadowed_body() const {
 
 void GridRenderer::prepare_filter(const RenderSettings& settings) {
   domain_.prepare(settings.filter, settings.tolerance, diagonal());
-  if (field_.kernel ? field_.filter == settings.filter : !wants_kernel(settings.filter)) return;
+  if (field_.kernel ? field_.filter == settings.filter : !scene::wants_kernel(settings.filter)) return;
   is_planned_ = false;
-  FilteredField field = make_filtered_field(grid_, settings.filter);
+  scene::FilteredField field = scene::make_filtered_field(grid_, settings.filter);
   field_ = std::move(field);
   frame_ = grid::make_grid_frame(drawn().data.shape);
 }
@@ -319,22 +320,22 @@ void GridRenderer::prepare_filter(const RenderSettings& settings) {
 /// Makes the table of ray integrals, where these are looked up. Constant cells need none.
 void GridRenderer::prepare_preintegration(const RenderSettings& settings, const Progress& progress) {
   if (!scene::is_of_tables(settings.integrator) || domain_.is_set() || is_constant(settings)) return;
-  const double longest = settings.samples_per_voxel > 0.0 ? mean_spacing(frame_) / settings.samples_per_voxel
-                                                          : longest_cell_diagonal(frame_);
+  const double longest = settings.samples_per_voxel > 0.0 ? grid::mean_spacing(frame_) / settings.samples_per_voxel
+                                                          : grid::longest_cell_diagonal(frame_);
   preintegration_.prepare({function_, scalar_map(), grid_.scalar_range, longest, progress}, settings);
 }
 
-PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
+scene::PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
   return {&drawn(),         &field_,
           &steepness_,      1.0f / antiderivative_.nodes_per_scalar,
           diagonal(),       is_constant(settings),
           domain_.is_set(), {}};
 }
 
-PlanSettings GridRenderer::plan_settings(const RenderSettings& settings) const {
-  PlanSettings wanted{settings.filter,           settings.integrator,
-                      settings.tolerance,        settings.samples_per_voxel,
-                      wants_gradients(settings), {}};
+scene::PlanSettings GridRenderer::plan_settings(const RenderSettings& settings) const {
+  scene::PlanSettings wanted{settings.filter,           settings.integrator,
+                             settings.tolerance,        settings.samples_per_voxel,
+                             wants_gradients(settings), {}};
   for (const Isosurface& surface : settings.surfaces)
     wanted.surface_values.push_back(scalar_map().stored_from_value(surface.value));
   std::sort(wanted.surface_values.begin(), wanted.surface_values.end());
@@ -342,14 +343,14 @@ PlanSettings GridRenderer::plan_settings(const RenderSettings& settings) const {
 }
 
 void GridRenderer::plan(const RenderSettings& settings) {
-  const PlanSettings wanted = plan_settings(settings);
+  const scene::PlanSettings wanted = plan_settings(settings);
   if (is_planned_ && wanted == planned_for_) return;
-  PlanSources sources = plan_sources(settings);
+  scene::PlanSources sources = plan_sources(settings);
   if (domain_.domain().is_table()) sources.is_seen = domain_.find_seen();
-  plans_ = plan_bricks(sources, wanted);
+  plans_ = scene::plan_bricks(sources, wanted);
   visible_.clear();
   for (std::size_t i = 0; i < plans_.size(); ++i)
-    if (plans_[i].level != BrickPlan::kTransparent) visible_.push_back(static_cast<std::uint32_t>(i));
+    if (plans_[i].level != scene::BrickPlan::kTransparent) visible_.push_back(static_cast<std::uint32_t>(i));
   planned_for_ = wanted;
   is_planned_ = true;
 }
@@ -358,12 +359,12 @@ MarchJob GridRenderer::make_job(const RenderSettings& settings, const Integrator
   MarchJob job;
   job.tables = &tables;
   job.steepness = &steepness_;
-  job.allowed_rate = allowed_rate_of(settings.tolerance, diagonal());
-  job.most_pieces = most_pieces_of(settings.tolerance);
+  job.allowed_rate = scene::allowed_rate_of(settings.tolerance, diagonal());
+  job.most_pieces = scene::most_pieces_of(settings.tolerance);
   job.use_early_ray_termination = settings.use_early_ray_termination;
   if (settings.tolerance > kOneStep) job.negligible = kNegligibleOfTolerance * static_cast<float>(settings.tolerance);
   if (settings.samples_per_voxel > 0.0)
-    job.sample_distance = static_cast<float>(mean_spacing(frame_) / settings.samples_per_voxel);
+    job.sample_distance = static_cast<float>(grid::mean_spacing(frame_) / settings.samples_per_voxel);
   return job;
 }
 
@@ -378,7 +379,7 @@ void GridRenderer::fill_lattices(const FrameParts& frame, std::uint32_t index, W
 /// Takes the rays of the workspace through a brick; returns how many segments they had.
 std::uint64_t GridRenderer::draw_brick(const FrameParts& frame, const TilePlace& place, const BinnedBrick& binned,
                                        Workspace& workspace) const {
-  const BrickPlan& plan = plans_[binned.brick];
+  const scene::BrickPlan& plan = plans_[binned.brick];
   MarchBrick brick = workspace.lattices.value.describe(drawn(), frame_, binned.brick, plan.level);
   brick.bounds = binned.bounds;
   MarchJob job = frame.job;

@@ -84,7 +84,7 @@ class GridShadows::Walk {
     const Bricks bricks{owner_};
     walk_lattice(line_, bricks, z_begin, z_end, [&](const LatticeIndex& at, double z_front, double z_back) {
       const auto index = static_cast<std::uint32_t>((at[2] * bricks.count(1) + at[1]) * bricks.count(0) + at[0]);
-      if (owner_.grid_.plans[index].level == BrickPlan::kTransparent) return true;
+      if (owner_.grid_.plans[index].level == scene::BrickPlan::kTransparent) return true;
       pass_brick(index, z_front, z_back);
       return !optics_.is_dark(sum_);
     });
@@ -94,7 +94,7 @@ class GridShadows::Walk {
   using Mark = optics::ExtinctionIntegral::Mark;
 
   void pass_brick(std::uint32_t index, double z_front, double z_back) {
-    const PlanSources& sources = owner_.grid_.sources;
+    const scene::PlanSources& sources = owner_.grid_.sources;
     const ValueRange range = range_of(sources, index);
     const bool has_missing =
         sources.grid->missing_values > 0 && (sources.field->kernel || sources.grid->bricks.has_missing[index] != 0);

@@ -2,13 +2,13 @@
 
 /// The effects of a frame: what RenderSettings ask for beside emission and absorption, as the kernels want it.
 
-#include "src/cpu/brick_plan.h"
 #include "src/cpu/kernels/effects.h"
 #include "src/cpu/shadow_rays.h"
 #include "src/cpu/shadows.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/centroid_table.h"
 #include "src/optics/environment_filter.h"
+#include "src/scene/brick_plan.h"
 #include "src/scene/camera_frame.h"
 #include "src/scene/frame_renderer.h"
 #include "tetravox/render.h"
@@ -43,7 +43,7 @@ struct Illustration {
 
   std::vector<LightSource> lights;
   std::vector<std::vector<ShadowMap>> shadows;  ///< of each light
-  std::vector<BrickPlan> shadow_plans;          ///< for exact shadows in grids
+  std::vector<scene::BrickPlan> shadow_plans;   ///< for exact shadows in grids
   std::unique_ptr<ShadowMedium> medium;         ///< for exact shadows
   std::unique_ptr<ShadowRays> rays;
   OcclusionMap occlusion;

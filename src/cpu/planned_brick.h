@@ -3,9 +3,9 @@
 /// Lattices of bricks as their plans ask, and a store of them for those who come back to the same bricks.
 
 #include "src/cpu/brick_lattice.h"
-#include "src/cpu/brick_plan.h"
 #include "src/cpu/kernels/kernels.h"
 #include "src/grid/frame.h"
+#include "src/scene/brick_plan.h"
 
 #include <array>
 #include <cstddef>
@@ -19,8 +19,8 @@ namespace tetravox::cpu {
 struct PlannedGrid {
   const grid::GridFrame* frame = nullptr;
   LatticeField field;
-  PlanSources sources;
-  std::span<const BrickPlan> plans;
+  scene::PlanSources sources;
+  std::span<const scene::BrickPlan> plans;
 };
 
 /// Reads the values of a brick that `lattice` has described last into it, and points `brick` at them.

@@ -1,5 +1,6 @@
 #include "src/gl/all_programs.h"
 
+#include "src/gl/march_passes.h"
 #include "src/gl/projection_passes.h"
 #include "src/gl/segment_lists.h"
 #include "src/gl/table_maker.h"
@@ -44,6 +45,8 @@ std::vector<ProgramRecipe> all_programs() {
   std::vector<ProgramRecipe> programs;
   add_walk(programs);
   add_projection(programs);
+  for (const MarchKind& kind : march_kinds())
+    programs.push_back({"march, " + kind.shader.name, {recipe_of_march(kind)}});
   for (const auto& [name, stages] : recipes_of_tables()) programs.push_back({"tables, " + name, stages});
   return programs;
 }

@@ -19,6 +19,9 @@ struct FrameBlock {
 struct WalkBlock {
 #include "src/gl/shaders/walk_block.glsl"
 };
+struct MarchBlock {
+#include "src/gl/shaders/march_block.glsl"
+};
 struct TablesBlock {
 #include "src/gl/shaders/integrators/tables_block.glsl"
 };
@@ -33,6 +36,6 @@ struct ProjectionBlock {
 };
 static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 6 * 16 &&
               sizeof(PreintegrationBlock) == 3 * 16 && sizeof(MakerBlock) == 4 * 16 &&
-              sizeof(ProjectionBlock) == 4 * 16);
+              sizeof(ProjectionBlock) == 4 * 16 && sizeof(MarchBlock) == 9 * 16);
 
 }  // namespace tetravox::gl

@@ -1,10 +1,255 @@
+#include "src/gl/frame_parts.h"
+#include "src/gl/frame_renderers.h"
+#include "src/gl/grid_textures.h"
+#include "src/gl/integrator_tables.h"
+#include "src/gl/march_bricks.h"
+#include "src/gl/march_passes.h"
+#include "src/grid/frame.h"
+#include "src/optics/steepness_table.h"
+#include "src/scene/brick_plan.h"
+#include "src/scene/filtered_field.h"
+#include "src/scene/grid_view.h"
+#include "src/support/threads.h"
+#include "src/support/timer.h"
 #include "tetravox/error.h"
-#include "tetravox/gl.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace tetravox::gl {
+namespace {
+
+/// As on the CPU: a segment's colours may err by this part of the picture's tolerance; and where errors of more than
+/// one 8-bit step are allowed, what comes through less than this part of it is left out.
+constexpr float kSegmentsOfTolerance = 40.0f, kNegligibleOfTolerance = 0.1f;
+constexpr double kOneStep = 1.0 / 255.0;
+
+/// Bricks that a ray is taken through in one pass: a fraction of a second on slow devices, which drivers with a
+/// watchdog allow.
+constexpr int kBricksAPass = 64;
+
+class GridRenderer final : public scene::FrameRenderer {
+ public:
+  GridRenderer(const PreparedGrid& grid, std::shared_ptr<Context> context)
+      : grid_(grid), context_(std::move(context)), frame_(grid::make_grid_frame(grid.data.shape)) {
+    const auto current = context_->make_current();
+    device_.emplace(grid, *context_);
+    context_->require_no_error("the grid");
+  }
+  ~GridRenderer() override {
+    const auto current = context_->make_current();
+    device_.reset();
+  }
+
+  void set_transfer_function(const OpticalFunction& function) override {
+    const optics::ScalarMap map = scalar_map();
+    device_->tables.set_transfer_function(
+        function, {map, grid_.scalar_range, diagonal(), grid::longest_cell_diagonal(frame_), false});
+    optics::build_steepness_table(device_->tables.control_points(), map.stored_from_value(grid_.scalar_range.min),
+                                  map.stored_from_value(grid_.scalar_range.max), steepness_);
+    has_domain_ = is_planned_ = false;
+  }
+  void set_table(const OpticalTable&, const std::vector<std::size_t>&) override { has_domain_ = true; }
+  void set_colors(std::size_t, const OpticalFunction&) override { has_domain_ = true; }
+  bool has_domain() const override { return has_domain_; }
+
+  void render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context, Image& image,
+              RenderStatistics& statistics) override;
+
+  std::uint64_t missing_bytes(const RenderSettings& settings) const override {
+    return estimate_render_memory(grid_.data, settings);
+  }
+  std::uint64_t bytes() const override {
+    return device_->values.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->bricks.bytes() +
+           device_->nodes.bytes() + device_->march.bytes();
+  }
+  std::vector<Source> sources() const override { return {Source::kMarch}; }
+  double diagonal() const override { return scene::diagonal_of(grid_.bounds); }
+
+ private:
+  /// What lives on the device, and dies with the context current.
+  struct Device {
+    Device(const PreparedGrid& grid, const Context& context) : values(grid, context) {}
+    GridTexture values;
+    FrameParts frame;
+    IntegratorTables tables;
+    MarchBricks bricks;
+    FilteredNodes nodes;
+    MarchPasses march;
+  };
+
+  optics::ScalarMap scalar_map() const { return {grid_.scalar_offset, grid_.scalar_scale}; }
+  bool is_constant(const RenderSettings& settings) const {
+    const bool is_cell = grid_.data.association == Association::kCell;
+    return settings.filter.kind == FilterKind::kNearest || (is_cell && !scene::wants_kernel(settings.filter));
+  }
+  const PreparedGrid& drawn() const { return field_.middles ? *field_.middles : grid_; }
+  scene::PlanSources plan_sources(const RenderSettings& settings) const;
+  void plan(const RenderSettings& settings);
+  FilteredBricks filtered_bricks(const scene::PlanSources& sources, const RenderSettings& settings) const;
+  MarchKind kind_of(const RenderSettings& settings) const;
+  MarchBlock describe(const scene::GridView& view, const RenderSettings& settings) const;
+
+  const PreparedGrid& grid_;
+  std::shared_ptr<Context> context_;
+  grid::GridFrame frame_;
+  scene::FilteredField field_;
+  optics::SteepnessTable steepness_;
+  std::optional<Device> device_;
+  std::vector<scene::BrickPlan> plans_;
+  scene::PlanSettings planned_for_;
+  bool is_planned_ = false, has_domain_ = false;
+};
+
+scene::PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
+  return {&drawn(), &field_, &steepness_, device_->tables.node_width(), diagonal(), is_constant(settings), false, {}};
+}
+
+/// Filter, plans, and what of them goes to the device.
+void GridRenderer::plan(const RenderSettings& settings) {
+  if (field_.kernel ? field_.filter != settings.filter : scene::wants_kernel(settings.filter)) {
+    is_planned_ = false;
+    field_ = scene::make_filtered_field(grid_, settings.filter);
+    frame_ = grid::make_grid_frame(drawn().data.shape);
+  }
+  const scene::PlanSettings wanted{
+      settings.filter, settings.integrator, settings.tolerance, settings.samples_per_voxel, false, {}};
+  if (is_planned_ && wanted == planned_for_) return;
+  const scene::PlanSources sources = plan_sources(settings);
+  plans_ = scene::plan_bricks(sources, wanted);
+  device_->bricks.upload(sources, plans_, frame_);
+  device_->nodes.forget();
+  planned_for_ = wanted;
+  is_planned_ = true;
+}
+
+MarchKind GridRenderer::kind_of(const RenderSettings& settings) const {
+  MarchKind kind;
+  kind.integrator = settings.integrator;
+  kind.is_uneven = std::any_of(frame_.planes.begin(), frame_.planes.end(), [](const auto& p) { return !p.empty(); });
+  kind.is_constant = is_constant(settings);
+  kind.is_nearest = kind.is_constant && grid_.data.association == Association::kPoint;
+  kind.has_nodes = field_.kernel != nullptr;
+  const bool is_preintegrated = settings.integrator != Integrator::kPost && settings.integrator != Integrator::kPre;
+  kind.has_samples = settings.samples_per_voxel > 0.0 && !kind.is_constant &&
+                     !(is_preintegrated && !kind.is_uneven && drawn().missing_values == 0);
+  if (kind.is_constant) kind.integrator = Integrator::kAntiderivative;  // all are the same
+  return kind;
+}
+
+FilteredBricks GridRenderer::filtered_bricks(const scene::PlanSources& sources, const RenderSettings& settings) const {
+  FilteredBricks bricks{&sources, &plans_, {}, nullptr};
+  bricks.field.reader = field_.reader.get();
+  bricks.field.padding = field_.coefficients.empty() ? 0 : scene::FilteredField::kMargin;
+  bricks.field.kernel = field_.kernel.get();
+  bricks.field.allowed_rate = scene::allowed_rate_of(settings.tolerance, diagonal());
+  if (settings.integrator == Integrator::kPre) bricks.points = &device_->tables.control_points();
+  return bricks;
+}
+
+MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSettings& settings) const {
+  MarchBlock block{};
+  const auto row = [&](int i) {
+    const double* m = view.grid_from_camera.data() + 4 * i;
+    return vec4{static_cast<float>(m[0]), static_cast<float>(m[1]), static_cast<float>(m[2]), static_cast<float>(m[3])};
+  };
+  block.grid_x = row(0);
+  block.grid_y = row(1);
+  block.grid_z = row(2);
+  const auto& dimensions = drawn().data.shape.dimensions;
+  block.upper = {frame_.plane(0, dimensions[0] - 1), frame_.plane(1, dimensions[1] - 1),
+                 frame_.plane(2, dimensions[2] - 1), 0.0f};
+  block.cells_x = static_cast<int>(dimensions[0] - 1);
+  block.cells_y = static_cast<int>(dimensions[1] - 1);
+  block.cells_z = static_cast<int>(dimensions[2] - 1);
+  block.bricks_x = static_cast<int>(drawn().bricks.counts[0]);
+  block.bricks_y = static_cast<int>(drawn().bricks.counts[1]);
+  block.bricks_z = static_cast<int>(drawn().bricks.counts[2]);
+  block.plane_base_y = static_cast<int>(dimensions[0]);
+  block.plane_base_z = static_cast<int>(dimensions[0] + dimensions[1]);
+  block.bricks_a_pass = kBricksAPass;
+  block.texel_offset = device_->values.map().offset;
+  block.texel_scale = device_->values.map().scale;
+  block.allowed_rate = scene::allowed_rate_of(settings.tolerance, diagonal());
+  block.most_pieces = scene::most_pieces_of(settings.tolerance);
+  block.steepness_first = steepness_.first;
+  block.bins_per_scalar = steepness_.bins_per_scalar;
+  if (settings.samples_per_voxel > 0.0)
+    block.sample_distance = static_cast<float>(grid::mean_spacing(frame_) / settings.samples_per_voxel);
+  if (settings.tolerance > kOneStep) block.negligible = kNegligibleOfTolerance * static_cast<float>(settings.tolerance);
+  return block;
+}
+
+void GridRenderer::render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context,
+                          Image& image, RenderStatistics& statistics) {
+  require_supported(settings);
+  if (settings.integrator == Integrator::kCylindrical)
+    throw Error(ErrorCode::kInvalidArgument,
+                "the integrator 'cylindrical' is for meshes: choose another (tetravox list methods)");
+  // The spline would have to pass through the densities of each function: no table of the values does that.
+  if (settings.integrator == Integrator::kPre && settings.filter.kind == FilterKind::kInterpolatingBspline)
+    throw Error(
+        ErrorCode::kInvalidArgument,
+        "pre-classification does not go with the filter 'bspline-interpolating': choose 'bspline' or 'catmull-rom'");
+  if (has_domain_)
+    throw Error(ErrorCode::kUnsupported,
+                "the OpenGL backend does not know functions of several variables yet: draw with --backend cpu");
+  const auto current = context_->make_current();
+  Device& device = *device_;
+  const support::Timer timer;
+  plan(settings);
+  const scene::GridView view = scene::make_grid_view(drawn(), frame_, camera, settings.width, settings.height);
+  device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);
+  device.values.volume().bind(kValueUnit);
+  device.bricks.bind();
+  device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, context_->limits(),
+                     context.progress, field_.kernel != nullptr);
+  statistics.plan_seconds = timer.seconds();
+  MarchKind kind = kind_of(settings);
+  kind.shader = takes_points(kind) ? IntegratorTables::point_shader() : device.tables.shader(settings);
+  // Where every fetch is a call, as of software, fewer and larger ones pay; hardware has caches and units for them.
+  const bool wants_squares =
+      context_->device().is_software && !kind.has_nodes && !kind.is_constant && kind.integrator != Integrator::kPre;
+  if (const Volume* squares = wants_squares ? device.values.squares(*context_) : nullptr) {
+    squares->bind(kSquareUnit);
+    kind.has_squares = true;
+  }
+  MarchFrame march{describe(view, settings), kind, device.frame, settings, context_->limits(), context.progress};
+  const scene::PlanSources sources = plan_sources(settings);
+  const FilteredBricks filtered = filtered_bricks(sources, settings);
+  std::vector<NodePlace> places;
+  if (march.kind.has_nodes) {
+    march.begin_bricks = [&] { device.nodes.begin(frame_, view, filtered, context_->limits()); };
+    march.next_bricks = [&] {
+      const bool has_more = device.nodes.next(filtered, context.progress, places);
+      device.bricks.place_nodes(places);
+      device.bricks.bind();
+      device.nodes.bind(kValueUnit);
+      return has_more;
+    };
+  }
+  device.march.draw(march, statistics);
+  device.frame.download(image);
+  context_->require_no_error("drawing");
+  note_backend(*context_, statistics);
+}
+
+}  // namespace
+
+std::unique_ptr<scene::FrameRenderer> make_grid_renderer(const PreparedGrid& grid, std::shared_ptr<Context> context) {
+  if (grid.bricks.count() == 0) throw Error(ErrorCode::kNothingToDraw, "the grid has no cells to draw");
+  return std::make_unique<GridRenderer>(grid, std::move(context));
+}
+
+}  // namespace tetravox::gl
 
 namespace tetravox {
 
-Renderer make_gl_renderer(const PreparedGrid&, const GlOptions&) {
-  throw Error(ErrorCode::kUnsupported, "the OpenGL backend does not draw grids yet: draw with --backend cpu");
+Renderer make_gl_renderer(const PreparedGrid& grid, const GlOptions& options) {
+  return Renderer(gl::make_grid_renderer(grid, gl::Context::open(options)));
 }
 
 }  // namespace tetravox

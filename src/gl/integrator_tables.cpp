@@ -53,11 +53,13 @@ std::vector<IntegratorShader> all_integrator_shaders() {
   return shaders;
 }
 
+IntegratorShader IntegratorTables::point_shader() { return kCell; }
+
 IntegratorShader IntegratorTables::shader(const RenderSettings& settings) const {
   if (sources_.is_constant) return kCell;
   switch (settings.integrator) {
     case Integrator::kAntiderivative:
-      return antiderivative_shader(antiderivative_.has_coarse, !antiderivative_.covers_data);
+      return antiderivative_shader(antiderivative_.has_coarse, is_beyond_);
     case Integrator::kPartial:
       return kPartial;
     case Integrator::kPost:
@@ -112,7 +114,7 @@ void IntegratorTables::upload_control_points() {
 }
 
 void IntegratorTables::bind(const RenderSettings& settings, float tolerance, const Limits& limits,
-                            const Progress& progress) {
+                            const Progress& progress, bool may_overshoot) {
   if (!has_control_points_) upload_control_points();
   points_.bind(kControlPointUnit);
   intervals_.bind(kFirstIntervalUnit);
@@ -166,7 +168,8 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance, con
   block.split_threshold = 12.0f * tolerance;
   block.last_node = table.last_node;
   block.has_coarse = table.has_coarse;
-  block.covers_data = table.covers_data;
+  is_beyond_ = !table.covers_data || may_overshoot;
+  block.covers_data = !is_beyond_;
   block.points_first = control_points_.first;
   block.buckets_per_scalar = control_points_.buckets_per_scalar;
   block.last_bucket = static_cast<int>(control_points_.first_interval.size()) - 1;

@@ -47,11 +47,16 @@ class IntegratorTables {
  public:
   void set_transfer_function(const OpticalFunction& function, const TableSources& sources);
   /// Puts on the device what the integrator of these settings needs and is not there yet, and binds it. `tolerance`: of
-  /// a segment.
-  void bind(const RenderSettings& settings, float tolerance, const Limits& limits, const Progress& progress);
-  /// @throws Error (kUnsupported) for an integrator that this backend does not know.
+  /// a segment; `may_overshoot`: whether scalars may lie beyond the range of the data.
+  void bind(const RenderSettings& settings, float tolerance, const Limits& limits, const Progress& progress,
+            bool may_overshoot = false);
+  /// Of the settings bound last. @throws Error (kUnsupported) for an integrator that this backend does not know.
   IntegratorShader shader(const RenderSettings& settings) const;
+  /// Of points that are looked up one by one: cell data, and samples.
+  static IntegratorShader point_shader();
   const optics::ControlPointTable& control_points() const { return control_points_; }
+  /// Stored scalars from node to node of the antiderivatives.
+  float node_width() const { return 1.0f / antiderivative_.nodes_per_scalar; }
   std::uint64_t bytes() const;
 
  private:
@@ -62,6 +67,7 @@ class IntegratorTables {
   TableSources sources_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
+  bool is_beyond_ = false;  // whether scalars may lie beyond the table of antiderivatives
   bool has_antiderivatives_ = false, has_control_points_ = false;  // on the device
   BufferTexture nodes_, variation_, marks_, points_, intervals_;
   scene::PreintegrationCache preintegration_;

@@ -134,6 +134,10 @@ std::vector<SourceMethods> gl_methods() {
                        source,
                        {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d,
                         Integrator::kPolynomial, Integrator::kPost, Integrator::kCylindrical}});
+  methods.push_back({"gl",
+                     Source::kMarch,
+                     {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d, Integrator::kPolynomial,
+                      Integrator::kPost, Integrator::kPre}});
   return methods;
 }
 

@@ -65,6 +65,31 @@ GridFrame make_grid_frame(const GridShape& shape) {
   return frame;
 }
 
+double mean_spacing(const GridFrame& frame) {
+  const auto& m = frame.world_from_grid;
+  return std::cbrt(std::abs(m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+                            m[2] * (m[3] * m[7] - m[4] * m[6])));
+}
+
+double longest_cell_diagonal(const GridFrame& frame) {
+  std::array<double, 3> sides{1.0, 1.0, 1.0};  // of the largest cell, grid coordinates
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<float>& planes = frame.planes[axis];
+    for (std::size_t i = 0; i + 1 < planes.size(); ++i)
+      sides[axis] = std::max(i == 0 ? 0.0 : sides[axis], static_cast<double>(planes[i + 1]) - planes[i]);
+  }
+  double longest = 0.0;
+  for (const double y : {-1.0, 1.0})
+    for (const double z : {-1.0, 1.0}) {
+      const auto& m = frame.world_from_grid;
+      const auto along = [&](int row) {
+        return m[3 * row] * sides[0] + m[3 * row + 1] * y * sides[1] + m[3 * row + 2] * z * sides[2];
+      };
+      longest = std::max(longest, std::hypot(along(0), along(1), along(2)));
+    }
+  return longest;
+}
+
 std::array<ValueRange, 3> bounds_of(const GridShape& shape) {
   const GridFrame frame = make_grid_frame(shape);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -29,6 +29,12 @@ struct GridFrame {
 
 GridFrame make_grid_frame(const GridShape& shape);
 
+/// World length of a voxel: of the cube with its volume.
+double mean_spacing(const GridFrame& frame);
+
+/// World length of the longest diagonal of a cell.
+double longest_cell_diagonal(const GridFrame& frame);
+
 /// Bounds of the lattice's corners, world units.
 std::array<ValueRange, 3> bounds_of(const GridShape& shape);
 

@@ -64,4 +64,18 @@ GridView make_grid_view(const PreparedGrid& grid, const grid::GridFrame& frame, 
   return view;
 }
 
+std::array<std::int64_t, 3> nearest_brick(const PreparedGrid& grid, const grid::GridFrame& frame,
+                                          const GridView& view) {
+  std::array<std::int64_t, 3> nearest{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t last = grid.bricks.counts[axis] - 1;
+    if (view.camera.is_orthographic)
+      nearest[axis] = view.eye[axis] > 0.0 ? 0 : last;
+    else
+      while (nearest[axis] < last && frame.plane(axis, (nearest[axis] + 1) * kBrickCells) <= view.eye[axis])
+        ++nearest[axis];
+  }
+  return nearest;
+}
+
 }  // namespace tetravox::scene

@@ -7,6 +7,7 @@
 #include "tetravox/grid.h"
 
 #include <array>
+#include <cstdint>
 
 namespace tetravox::scene {
 
@@ -29,6 +30,10 @@ struct GridView {
 
 GridView make_grid_view(const PreparedGrid& grid, const grid::GridFrame& frame, const Camera& camera, int width,
                         int height);
+
+/// The brick that holds the eye, or the one nearest to it. Along any ray from the eye the number of bricks between a
+/// brick and this one, counted along the axes and summed, ascends.
+std::array<std::int64_t, 3> nearest_brick(const PreparedGrid& grid, const grid::GridFrame& frame, const GridView& view);
 
 /// A point under a 3 x 4 matrix.
 grid::Point transform_point(const std::array<double, 12>& matrix, const grid::Point& point);

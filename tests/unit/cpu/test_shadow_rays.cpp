@@ -328,7 +328,7 @@ class GridLines : public ::testing::TestWithParam<int> {
   }
 
   Transmission trace(const Vector3& place, const Vector3& to_light, double distance) const {
-    const FilteredField unfiltered;
+    const scene::FilteredField unfiltered;
     const grid::GridFrame frame = grid::make_grid_frame(grid_.data.shape);
     const grid::BlockReader reader(grid_.data, {grid_.scalar_offset, grid_.scalar_scale});
     PlannedGrid planned;
@@ -336,12 +336,12 @@ class GridLines : public ::testing::TestWithParam<int> {
     planned.field.kernels = &kernels_for("");
     planned.field.reader = &reader;
     planned.field.is_constant = is_cell();
-    planned.field.allowed_rate = allowed_rate_of(1e-6, 3.0);
+    planned.field.allowed_rate = scene::allowed_rate_of(1e-6, 3.0);
     planned.sources = {&grid_, &unfiltered, &steepness_, 1e-6f, 3.0, is_cell(), false, {}};
-    PlanSettings settings;
+    scene::PlanSettings settings;
     settings.tolerance = 1e-6;
     settings.wants_gradients = true;
-    const std::vector<BrickPlan> plans = plan_bricks(planned.sources, settings);
+    const std::vector<scene::BrickPlan> plans = scene::plan_bricks(planned.sources, settings);
     planned.plans = plans;
     ShadowOptics optics;
     optics.extinction = &medium_.integral;

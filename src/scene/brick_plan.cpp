@@ -1,11 +1,11 @@
-#include "src/cpu/brick_plan.h"
+#include "src/scene/brick_plan.h"
 
 #include "src/scene/preintegration_cache.h"
 #include "src/support/threads.h"
 
 #include <algorithm>
 
-namespace tetravox::cpu {
+namespace tetravox::scene {
 namespace {
 
 /// Errors of scalars that lie within their bounds hardly ever add up along a whole ray: a ray may be that many times
@@ -153,4 +153,4 @@ std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSetting
   return plans;
 }
 
-}  // namespace tetravox::cpu
+}  // namespace tetravox::scene

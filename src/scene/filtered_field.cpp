@@ -1,4 +1,4 @@
-#include "src/cpu/filtered_field.h"
+#include "src/scene/filtered_field.h"
 
 #include "src/grid/summaries.h"
 #include "src/support/threads.h"
@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 
-namespace tetravox::cpu {
+namespace tetravox::scene {
 namespace {
 
 /// The values of cell data as points at the middles of the cells.
@@ -131,4 +131,4 @@ FilteredField make_filtered_field(const PreparedGrid& grid, const Filter& filter
   return field;
 }
 
-}  // namespace tetravox::cpu
+}  // namespace tetravox::scene

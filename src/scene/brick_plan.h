@@ -2,8 +2,8 @@
 
 /// How each brick of a grid is drawn, before a ray has entered it.
 
-#include "src/cpu/filtered_field.h"
 #include "src/optics/steepness_table.h"
+#include "src/scene/filtered_field.h"
 #include "tetravox/grid.h"
 #include "tetravox/render.h"
 
@@ -12,7 +12,7 @@
 #include <functional>
 #include <vector>
 
-namespace tetravox::cpu {
+namespace tetravox::scene {
 
 struct BrickPlan {
   static constexpr std::uint8_t kTransparent = 0xFF;
@@ -65,4 +65,4 @@ ValueRange range_of(const PlanSources& sources, std::size_t brick);
 /// One plan a brick. Microseconds for a thousand bricks, on all cores.
 std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSettings& settings);
 
-}  // namespace tetravox::cpu
+}  // namespace tetravox::scene

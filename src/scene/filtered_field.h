@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-namespace tetravox::cpu {
+namespace tetravox::scene {
 
 /// What a kernel needs beside the values. Empty: the filter needs none.
 struct FilteredField {
@@ -30,4 +30,4 @@ bool wants_kernel(const Filter& filter);
 /// Coefficients, reader and range in each brick. `grid` must outlive what comes back. Deterministic.
 FilteredField make_filtered_field(const PreparedGrid& grid, const Filter& filter);
 
-}  // namespace tetravox::cpu
+}  // namespace tetravox::scene

@@ -1,0 +1,39 @@
+#pragma once
+
+/// What rays must know of the bricks of a grid, on the device.
+
+#include "src/gl/blocks.h"
+#include "src/gl/filtered_nodes.h"
+#include "src/gl/resources.h"
+#include "src/grid/frame.h"
+#include "src/scene/brick_plan.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tetravox::gl {
+
+/// Texture units of the source `march`.
+inline constexpr GLuint kBrickUnit = 6, kPlaneUnit = 7, kSteepnessUnit = 8, kValueUnit = 9, kSquareUnit = 10;
+
+/// A brick's plan as shaders have it (march.glsl): level, stride, flags. Steps are of the values themselves, which cost
+/// no more here than those of larger cells; what remains of levels is one cell for all of a constant brick.
+std::uint32_t pack_plan(scene::BrickPlan plan, bool has_missing);
+
+/// Plans, steepness table, planes of uneven axes. With the context current.
+class MarchBricks {
+ public:
+  void upload(const scene::PlanSources& sources, const std::vector<scene::BrickPlan>& plans,
+              const grid::GridFrame& frame);
+  /// Says where the nodes of filtered bricks are, [bricks].
+  void place_nodes(const std::vector<NodePlace>& places);
+  void bind() const;
+  std::uint64_t bytes() const { return plans_.bytes() + steepness_.bytes() + planes_.bytes(); }
+
+ private:
+  std::vector<std::array<std::uint32_t, 4>> records_;  ///< plan, bits of the steepness, first node, parts
+  BufferTexture plans_, steepness_, planes_;
+};
+
+}  // namespace tetravox::gl

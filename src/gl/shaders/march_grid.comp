@@ -1,0 +1,85 @@
+// Takes each ray through the bricks of a grid front to back, some bricks a pass.
+
+#include "marcher.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 0, rgba32f) uniform writeonly image2D picture;
+
+layout(std430, binding = 0) buffer Counters {
+  uint unfinished_count;  // rays that need another pass
+  uint waiting_count;     // rays that have come to a brick whose values are not there yet
+  uint met_count;         // rays that met a brick which is seen
+  uint segments[64];      // spread, so that they are not fought for
+} counters;
+
+struct Pause {  // what a ray needs to go on in another pass
+  vec4 sum;
+  float z;      // kNever: it has arrived
+  uint has_met;
+  float sample_depth, sample_number;  // see `Carried`
+  vec4 sample_value;
+};
+layout(std430, binding = 1) buffer Pauses { Pause pauses[]; };  // [rows][width]
+
+bool is_over(vec4 sum) {
+  return frame.use_early_ray_termination != 0 && (sum.a < march.negligible || is_settled(sum));
+}
+
+void main() {
+  ivec2 pixel = pixel_of(gl_WorkGroupID, gl_LocalInvocationIndex);
+  if (is_outside_rows(pixel)) return;
+  uint place = place_of(pixel);
+  GridRay ray = grid_ray_of(pixel);
+  vec2 depths = clip_grid(ray);
+  vec4 sum = kNothingYet;
+  bool has_met = false, is_waiting = false;
+  carried = Carried(vec4(0.0), -kNever, 0.0, depths.y);
+  if (march.is_first_pass == 0) {
+    depths.x = pauses[place].z;
+    if (depths.x >= kNever) return;
+    sum = pauses[place].sum;
+    has_met = pauses[place].has_met != 0u;
+    carried = Carried(pauses[place].sample_value, pauses[place].sample_depth, pauses[place].sample_number, depths.y);
+  }
+  uint segment_count = 0u;
+  BrickWalk walk;
+  walk.z = walk.z_exit = 0.0;
+  bool is_done = depths.x >= depths.y;
+  if (!is_done) walk = enter_grid(ray, depths.x, depths.y);
+  for (int i = 0; !is_done && i < march.bricks_a_pass; ++i) {
+    uvec4 plan = uvec4(kTransparent);
+    float leave = 0.0;
+    while (!is_done) {
+      plan = plan_of(walk.brick);
+      leave = leave_of(walk);
+      if ((plan.x & 0xFFu) != kTransparent && leave > walk.z) break;
+      leave_brick(ray, walk);
+      is_done = has_left(walk);
+    }
+#ifdef HAS_NODES
+    is_waiting = plan.w == 0u;
+#endif
+    if (is_done || is_waiting) break;
+    has_met = true;
+    march_brick(ray, walk.brick, plan, walk.z, leave, sum, segment_count);
+    leave_brick(ray, walk);
+    is_done = has_left(walk) || is_over(sum);
+  }
+  if (segment_count > 0u) atomicAdd(counters.segments[place % 64u], segment_count);
+  pauses[place].z = is_done ? kNever : walk.z;
+  if (is_done) {
+    if (has_met) atomicAdd(counters.met_count, 1u);
+    imageStore(picture, pixel, min(vec4(sum.rgb, 1.0 - sum.a), 1.0));
+    return;
+  }
+  pauses[place].sum = sum;
+  pauses[place].has_met = uint(has_met);
+  pauses[place].sample_value = carried.value;
+  pauses[place].sample_depth = carried.depth;
+  pauses[place].sample_number = carried.number;
+  if (is_waiting)
+    atomicAdd(counters.waiting_count, 1u);
+  else
+    atomicAdd(counters.unfinished_count, 1u);
+}
