@@ -49,6 +49,8 @@ class Context {
 
   /// @throws Error (kInternal or kOutOfMemory) with what the driver has complained of since the last call.
   void require_no_error(const std::string& where) const;
+  /// Drops such a complaint, where the caller says it better.
+  void forget_complaint() const { complaint_->clear(); }
 
  private:
   Context() = default;
