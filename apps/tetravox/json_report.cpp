@@ -1,5 +1,7 @@
 #include "apps/tetravox/json_report.h"
 
+#include "tetravox/slicing.h"
+
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
@@ -115,7 +117,9 @@ std::string format_statistics(const PictureStatistics& statistics) {
   if (!statistics.render.device.empty()) json["device"] = statistics.render.device;
   json["kind"] = grid ? "grid" : "mesh";
   if (grid) json["dimensions"] = grid->dimensions;
-  json["source"] = name_of(statistics.settings.source.value_or(grid ? Source::kMarch : Source::kWalk));
+  const Source source = statistics.settings.source.value_or(grid ? Source::kMarch : Source::kWalk);
+  json["source"] = name_of(SourceChoice{source, statistics.settings.slicing.kind});
+  if (source == Source::kSlices) json["slices"] = statistics.render.slices;
   json["integrator"] = statistics.render.integrator;
   if (grid) json["filter"] = name_of(statistics.settings.filter);
   json["resolution"] = {statistics.settings.width, statistics.settings.height};

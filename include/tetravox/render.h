@@ -27,8 +27,32 @@ namespace tetravox {
 
 /// Where segments come from.
 enum class Source {
-  kWalk,  ///< meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)
-  kMarch  ///< grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)
+  kWalk,   ///< meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)
+  kMarch,  ///< grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)
+  kSlices  ///< grids, gl: slabs between slices, blended (Cullip and Neumann 1993; Engel and Ertl 2002)
+};
+
+/// What slices are, and what they are cut from (Engel and Ertl 2002).
+enum class SlicingKind {
+  kObject2d,              ///< the 2D textures of the stack that lies most across the view, one by one
+  kObject2dInterpolated,  ///< the same with slices between them, interpolated from two textures
+  kStripes2d,             ///< planes across the view, cut into stripes between neighbouring 2D textures of one stack
+  kView3d,                ///< planes across the view through a 3D texture (default)
+  kShells                 ///< spheres round the eye through a 3D texture: equal distances in a perspective
+};
+
+/// What pre-integration takes the field for between two slices.
+enum class SlabShape {
+  kLinear,  ///< linear along the ray: one segment (Engel, Kraus, Ertl 2001)
+  kCurved   ///< the parabola through a third sample, in the middle: as many segments as it bends (default)
+};
+
+/// How grids are drawn by slices; more in slicing.h.
+struct SlicingSettings {
+  SlicingKind kind = SlicingKind::kView3d;
+  int slices = 0;  ///< along the diagonal of the grid, in [1, kMostSlices]; 0: as the rate says
+  SlabShape slabs = SlabShape::kCurved;
+  double slices_per_voxel = 2.0;  ///< the rate: a mean distance of values, in (0, 64]
 };
 
 /// What turns a segment into colour and opacity.
@@ -66,6 +90,7 @@ struct RenderSettings {
   Filter filter;                   ///< how a grid's field is reconstructed
   double samples_per_voxel = 0.0;  ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
   EntryOrder entry_order = EntryOrder::kLists;  ///< meshes, gl
+  SlicingSettings slicing;                      ///< of the source kSlices
   Lighting lighting;
   std::vector<Isosurface> surfaces;
   Clipping clipping;
@@ -85,6 +110,7 @@ struct RenderStatistics {
   std::uint64_t segments = 0;      ///< ray-cell segments, as walked or marched
   std::uint64_t rays = 0;          ///< rays that met the data
   std::uint64_t stopped_rays = 0;  ///< rays stopped by the bound on steps (damaged meshes only)
+  int slices = 0;                  ///< slabs between slices that were drawn (source kSlices)
   int threads = 0;
   std::string backend;          ///< "cpu" or "gl"
   std::string device;           ///< gl: what OpenGL calls its renderer
@@ -92,8 +118,8 @@ struct RenderStatistics {
   std::string integrator;       ///< name of the one that drew; "domain" for functions of several variables
 };
 
-/// Names of enumerators as on the command line and in scene files ("walk", "march"; "antiderivative", "partial",
-/// "post", "pre"), and back.
+/// Names of enumerators as on the command line and in scene files ("walk", "march", "slices"; "antiderivative",
+/// "partial", "post", "pre"), and back.
 std::string name_of(Source source);
 std::string name_of(Integrator integrator);
 std::string name_of(EntryOrder order);      ///< "lists", "peeling"

@@ -19,9 +19,13 @@ struct FrameBlock {
 struct WalkBlock {
 #include "src/gl/shaders/walk_block.glsl"
 };
+struct SliceBlock {
+#include "src/gl/shaders/slice_block.glsl"
+};
 struct TablesBlock {
 #include "src/gl/shaders/integrators/tables_block.glsl"
 };
+static_assert(sizeof(SliceBlock) == (9 + 8 + 8 + 4 + 6) * 16);
 static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 6 * 16);
 
 }  // namespace tetravox::gl

@@ -38,11 +38,11 @@ std::vector<IntegratorShader> all_integrator_shaders() {
   return shaders;
 }
 
-IntegratorShader IntegratorTables::shader(Integrator integrator) const {
+IntegratorShader IntegratorTables::shader(Integrator integrator, bool may_overshoot) const {
   if (is_constant_) return kCell;
   switch (integrator) {
     case Integrator::kAntiderivative:
-      return antiderivative_shader(antiderivative_.has_coarse, !antiderivative_.covers_data);
+      return antiderivative_shader(antiderivative_.has_coarse, may_overshoot || !antiderivative_.covers_data);
     case Integrator::kPartial:
       return kPartial;
     case Integrator::kPost:

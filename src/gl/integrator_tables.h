@@ -45,7 +45,8 @@ class IntegratorTables {
   /// a segment.
   void bind(const RenderSettings& settings, float tolerance);
   /// @throws Error (kUnsupported) for an integrator that this backend does not know.
-  IntegratorShader shader(Integrator integrator) const;
+  /// `may_overshoot`: scalars may leave the range that the function was set for.
+  IntegratorShader shader(Integrator integrator, bool may_overshoot = false) const;
   const optics::ControlPointTable& control_points() const { return control_points_; }
   std::uint64_t bytes() const;
 

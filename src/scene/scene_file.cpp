@@ -3,6 +3,7 @@
 #include "src/scene/scene_multidimensional.h"
 #include "tetravox/error.h"
 #include "tetravox/scene.h"
+#include "tetravox/slicing.h"
 
 #include <cmath>
 #include <cstddef>
@@ -95,10 +96,21 @@ void read_image(const JsonPlace& place, Scene& scene) {
 }
 
 void read_render(const JsonPlace& place, RenderSettings& settings) {
-  place.require_keys({"source", "integrator", "filter", "tolerance", "samples", "samples_per_voxel", "opacity_weight",
-                      "opacity_weight_scale", "early_ray_termination"});
-  if (const auto source = place.find("source"))
-    settings.source = at_place(*source, [&] { return source_from_name(source->string()); });
+  place.require_keys({"source", "integrator", "filter", "tolerance", "samples", "samples_per_voxel", "slices",
+                      "slices_per_voxel", "slabs", "opacity_weight", "opacity_weight_scale", "early_ray_termination"});
+  if (const auto source = place.find("source")) {
+    const SourceChoice choice = at_place(*source, [&] { return source_choice_from_name(source->string()); });
+    settings.source = choice.source;
+    settings.slicing.kind = choice.slicing;
+  }
+  if (const auto slices = place.find("slices"))
+    settings.slicing.slices = static_cast<int>(slices->integer(1, kMostSlices));
+  if (const auto slabs = place.find("slabs"))
+    settings.slicing.slabs = at_place(*slabs, [&] { return slab_shape_from_name(slabs->string()); });
+  if (const auto rate = place.find("slices_per_voxel")) {
+    settings.slicing.slices_per_voxel = rate->number();
+    at_place(*rate, [&] { validate_slicing(settings.slicing); });
+  }
   if (const auto integrator = place.find("integrator"))
     settings.integrator = at_place(*integrator, [&] { return integrator_from_name(integrator->string()); });
   if (const auto filter = place.find("filter"))
@@ -182,12 +194,16 @@ Json write_camera(const Camera& camera) {
 
 Json write_render(const RenderSettings& settings) {
   Json json;
-  if (settings.source) json["source"] = name_of(*settings.source);
+  if (settings.source) json["source"] = name_of(SourceChoice{*settings.source, settings.slicing.kind});
   json["integrator"] = name_of(settings.integrator);
   if (settings.filter != Filter{}) json["filter"] = name_of(settings.filter);
   json["tolerance"] = settings.tolerance;
   json["samples"] = settings.samples;
   if (settings.samples_per_voxel > 0.0) json["samples_per_voxel"] = settings.samples_per_voxel;
+  if (settings.slicing.slabs != SlabShape::kCurved) json["slabs"] = name_of(settings.slicing.slabs);
+  if (settings.slicing.slices > 0) json["slices"] = settings.slicing.slices;
+  if (settings.slicing.slices_per_voxel != SlicingSettings{}.slices_per_voxel)
+    json["slices_per_voxel"] = settings.slicing.slices_per_voxel;
   if (settings.opacity_weight != OpacityWeight::kNone) {
     json["opacity_weight"] = name_of(settings.opacity_weight);
     json["opacity_weight_scale"] = settings.opacity_weight_scale;
