@@ -32,6 +32,8 @@ void override_lighting(const EffectOptions& options, Lighting& lighting) {
   lighting.is_two_sided = options.is_two_sided.value_or(lighting.is_two_sided);
   lighting.shadows = options.shadows.value_or(lighting.shadows);
   lighting.shadow_resolution = options.shadow_resolution.value_or(lighting.shadow_resolution);
+  lighting.translucency = options.translucency.value_or(lighting.translucency);
+  lighting.translucency_angle = options.translucency_angle.value_or(lighting.translucency_angle);
   lighting.ambient_occlusion = options.ambient_occlusion.value_or(lighting.ambient_occlusion);
   // Surroundings are light enough, unless the headlight is asked for by its name.
   const bool is_dark = lighting.lights.empty() && (!lighting.environment || options.use_headlight);

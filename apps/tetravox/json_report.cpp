@@ -1,5 +1,7 @@
 #include "apps/tetravox/json_report.h"
 
+#include "tetravox/slicing.h"
+
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
@@ -149,7 +151,8 @@ std::string format_statistics(const PictureStatistics& statistics) {
   const Source source = statistics.settings.source.value_or(grid ? Source::kMarch : Source::kWalk);
   if (source == Source::kProject || source == Source::kVicp)
     json["projection"] = projection_json(statistics.settings.projection, statistics.render.projection);
-  json["source"] = name_of(source);
+  json["source"] = name_of(SourceChoice{source, statistics.settings.slicing.kind});
+  if (source == Source::kSlices) json["slices"] = statistics.render.slices;
   json["integrator"] = statistics.render.integrator;
   if (grid) json["filter"] = name_of(statistics.settings.filter);
   json["resolution"] = {statistics.settings.width, statistics.settings.height};

@@ -8,6 +8,7 @@
 #include "tetravox/io.h"
 #include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
+#include "tetravox/slicing.h"
 #include "tetravox/transfer_function.h"
 #include "tetravox/visibility.h"
 
@@ -70,6 +71,8 @@ void run_list(const ListOptions& options) {
     case ListOptions::Topic::kMethods:
       std::cout << with_title("What draws by what (--backend, --source, --integrator):", method_rows())
                 << with_title("Sources (--source):", source_names())
+                << with_title("Kinds of slices (--source slices=KIND):", slicing_kind_names())
+                << with_title("Slabs between slices (--slabs):", slab_shape_names())
                 << with_title("Orders of projected cells (--sort):", cell_sort_names())
                 << with_title("Classifications (--classification):", classification_names())
                 << with_title("Integrators (--integrator):", integrator_names())

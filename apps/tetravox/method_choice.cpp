@@ -109,7 +109,14 @@ void require_consistent(const MethodOptions& method) {
 }
 
 void override_method(const MethodOptions& method, RenderSettings& settings) {
-  if (method.source) settings.source = method.source;
+  if (method.source) {
+    settings.source = method.source->source;
+    settings.slicing.kind = method.source->slicing;
+  }
+  settings.slicing.slabs = method.slabs.value_or(settings.slicing.slabs);
+  // A number and a rate take each other's place.
+  if (method.slices || method.slices_per_voxel) settings.slicing.slices = method.slices.value_or(0);
+  settings.slicing.slices_per_voxel = method.slices_per_voxel.value_or(settings.slicing.slices_per_voxel);
   if (method.classification && classification_of(settings.integrator) != *method.classification)
     settings.integrator = integrator_of(*method.classification);
   settings.integrator = method.integrator.value_or(settings.integrator);
@@ -134,7 +141,7 @@ std::vector<std::string> check_method(const MethodOptions& method, const RenderS
   const auto require = [&](bool is_suitable, bool is_option, const char* option, const char* key) {
     if (!is_suitable) refuse(is_option, option, key, is_grid, data_name);
   };
-  const bool is_for_grids = settings.source == Source::kMarch;
+  const bool is_for_grids = settings.source == Source::kMarch || settings.source == Source::kSlices;
   require(!settings.source || is_for_grids == is_grid, method.source.has_value(), "--source", "source");
   require(is_grid || settings.filter == Filter{}, method.filter.has_value(), "--filter", "filter");
   require(is_grid || settings.samples_per_voxel == 0.0, method.samples_per_voxel.has_value(), "--samples-per-voxel",
@@ -150,6 +157,11 @@ std::vector<std::string> check_method(const MethodOptions& method, const RenderS
     lines.push_back(std::string(method.entry_order ? "--entry-order" : "--gl-device") +
                     " changes nothing: it is for --backend gl");
   check_tables(method.preintegration, settings.integrator, lines);
+  if ((method.slices || method.slices_per_voxel || method.slabs) && settings.source != Source::kSlices)
+    lines.push_back(std::string(method.slices  ? "--slices"
+                                : method.slabs ? "--slabs"
+                                               : "--slices-per-voxel") +
+                    " changes nothing: it is for --source slices");
   const std::string integrator = name_of(settings.integrator);
   if (method.samples && settings.integrator != Integrator::kPost)
     lines.push_back("--samples changes nothing: it is for --integrator post, and this picture is drawn by " +

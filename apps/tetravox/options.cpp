@@ -167,7 +167,7 @@ void add_method(CLI::App& app, RenderOptions& options) {
   add(app, "--entry-order", "NAME", "Meshes, gl: how entries of rays are put in order: lists (default), peeling",
       store(method.entry_order, named(entry_order_from_name)));
   add(app, "--source", "NAME", "Where segments come from (tetravox list methods)",
-      store(method.source, named(source_from_name)));
+      store(method.source, named(source_choice_from_name)));
   add(app, "--sort", "NAME", "project, vicp: order of cells, xmpvo (default) or another (tetravox list methods)",
       store(method.sort, named(cell_sort_from_name)));
   add(app, "--decomposition", "cpu|gpu", "project: where cells become triangles (default: cpu)",
@@ -176,6 +176,16 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.use_pixel_correction, parse_switch));
   add(app, "--mesh-transfer", "order|cells", "vicp: what is sent for a frame (default: order, the mesh stays)",
       store(method.transfer, named(mesh_transfer_from_name)));
+  add(app, "--slices", "N", "Source slices: slices along the diagonal of the grid, up to 16384",
+      store(method.slices, integer(1, kMostSlices)));
+  add(app, "--slabs", "NAME", "Source slices, pre-integrated: what lies between two slices: curved (default), linear",
+      store(method.slabs, named(slab_shape_from_name)));
+  add(app, "--slices-per-voxel", "N", "Source slices: their rate, up to 64 (default: 2)",
+      [&method](const std::string& option, const std::string& text) {
+        method.slices_per_voxel = parse_positive_number(option, text);
+        if (*method.slices_per_voxel > kHighestRate)
+          throw UsageError(option + ": '" + text + "' is not a number above 0, at most 64");
+      });
   add_integrator(app, method);
   add(app, "--classification", "NAME", "Where the function is applied: preintegrated (default), post, pre",
       store(method.classification, parse_classification));

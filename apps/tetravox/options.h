@@ -5,6 +5,7 @@
 #include "apps/tetravox/option_values.h"
 
 #include "tetravox/scene.h"
+#include "tetravox/slicing.h"
 #include "tetravox/visibility.h"
 
 #include <array>
@@ -85,11 +86,14 @@ struct MethodOptions {
   bool use_gl = false;
   std::optional<int> gl_device;
   std::optional<EntryOrder> entry_order;
-  std::optional<Source> source;
+  std::optional<SourceChoice> source;
   std::optional<CellSort> sort;
   std::optional<Decomposition> decomposition;
   std::optional<bool> use_pixel_correction;
   std::optional<MeshTransfer> transfer;
+  std::optional<int> slices;
+  std::optional<SlabShape> slabs;
+  std::optional<double> slices_per_voxel;
   std::optional<Classification> classification;
   std::optional<Integrator> integrator;
   PreintegrationOptions preintegration;
@@ -122,6 +126,7 @@ struct EffectOptions {
   std::optional<bool> is_two_sided;
   std::optional<ShadowKind> shadows;
   std::optional<int> shadow_resolution, ambient_occlusion;
+  std::optional<double> translucency, translucency_angle;
   std::optional<std::vector<SurfaceOption>> surfaces;
   std::optional<Color> surface_back_color;
   bool are_surfaces_one_sided = false;

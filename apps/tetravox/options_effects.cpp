@@ -125,7 +125,7 @@ auto with_side(Parse parse) {
 
 bool EffectOptions::wants_light() const {
   return use_headlight || material || gradient || gradient_threshold || is_two_sided || shadows || shadow_resolution ||
-         ambient_occlusion || (surfaces && !surfaces->empty());
+         translucency || translucency_angle || ambient_occlusion || (surfaces && !surfaces->empty());
 }
 
 void add_light(CLI::App& app, EffectOptions& effects) {
@@ -153,10 +153,15 @@ void add_light(CLI::App& app, EffectOptions& effects) {
       "Gradient, in value ranges a diagonal, at which shading has half its strength (default: 2)",
       store(effects.gradient_threshold, parse_number));
   add(app, "--two-sided", "on|off", "Light both sides alike (default: on)", store(effects.is_two_sided, parse_switch));
-  add(app, "--shadows", "NAME", "none (default), volume or exact: the data shadow themselves",
+  add(app, "--shadows", "NAME", "none (default), volume, exact or half-angle: the data shadow themselves",
       store(effects.shadows, named(shadow_kind_from_name)));
   add(app, "--shadow-resolution", "N", "Lattice points a side, 8 to 512 (default: 128)",
       store(effects.shadow_resolution, integer(8, 512)));
+  add(app, "--translucency", "W",
+      "Shadows half-angle: part of the light that is scattered forward, 0 to 1 (default: 0)",
+      store(effects.translucency, parse_number));
+  add(app, "--translucency-angle", "DEGREES", "Half the angle of the cone that it is scattered into (default: 20)",
+      store(effects.translucency_angle, parse_number));
   add(app, "--ambient-occlusion", "N", "Directions, up to 1024; 64 are smooth (default: 0, none)",
       store(effects.ambient_occlusion, integer(0, 1024)));
 }

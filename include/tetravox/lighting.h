@@ -51,7 +51,10 @@ struct Light {
 enum class ShadowKind {
   kNone,
   kVolume,  ///< optical depth towards each light, on a lattice that it sees
-  kExact    ///< a ray from each light to each place that is lit, for stills
+  kExact,   ///< a ray from each light to each place that is lit, for stills
+  /// Source kSlices: slices half way between view and light, drawn from both in turns (Kniss, Premoze, Hansen, Ebert
+  /// 2002). One directional light.
+  kHalfAngle
 };
 
 /// Light from all around, as a picture of the surroundings has it (environment.h). It throws no shadows; ambient
@@ -73,7 +76,9 @@ struct Lighting {
   double gradient_threshold = 2.0;
   bool is_two_sided = true;  ///< whether sides that look away from a light are lit as if they faced it
   ShadowKind shadows = ShadowKind::kNone;
-  int shadow_resolution = 128;       ///< of kVolume and occlusion: lattice points along each axis, in [8, 512]
+  int shadow_resolution = 128;       ///< of all but kExact: lattice points along each axis, in [8, 512]
+  double translucency = 0.0;         ///< of kHalfAngle: part of the light that is scattered forward, in [0, 1]
+  double translucency_angle = 20.0;  ///< of the cone that it is scattered into, degrees off its axis, in [0, 80]
   int ambient_occlusion = 0;         ///< directions over the sphere, in [0, 1024]; 0: none
   std::uint64_t occlusion_seed = 1;  ///< of the order of directions
   bool is_lit() const { return !lights.empty() || environment.has_value(); }
@@ -85,7 +90,7 @@ std::string name_of(GradientMethod method);  ///< "default", "filter", "central"
 GradientMethod gradient_method_from_name(const std::string& name);
 std::string name_of(LightKind kind);  ///< "headlight", "directional", "point"
 LightKind light_kind_from_name(const std::string& name);
-std::string name_of(ShadowKind kind);  ///< "none", "volume", "exact"
+std::string name_of(ShadowKind kind);  ///< "none", "volume", "exact", "half-angle"
 ShadowKind shadow_kind_from_name(const std::string& name);
 /// Names, one-line descriptions.
 std::vector<std::pair<std::string, std::string>> gradient_method_names();

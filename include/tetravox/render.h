@@ -32,7 +32,31 @@ enum class Source {
   kWalk,     ///< meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)
   kProject,  ///< meshes, OpenGL: projected tetrahedra (Shirley and Tuchman 1990; Wilhelms and Van Gelder 1991)
   kVicp,     ///< meshes, OpenGL: view-independent cell projection (Weiler, Kraus, Merz, Ertl 2003)
-  kMarch     ///< grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)
+  kMarch,    ///< grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)
+  kSlices    ///< grids, OpenGL: slabs between slices, blended (Cullip and Neumann 1993; Engel and Ertl 2002)
+};
+
+/// What slices are, and what they are cut from (Engel and Ertl 2002).
+enum class SlicingKind {
+  kObject2d,              ///< the 2D textures of the stack that lies most across the view, one by one
+  kObject2dInterpolated,  ///< the same with slices between them, interpolated from two textures
+  kStripes2d,             ///< planes across the view, cut into stripes between neighbouring 2D textures of one stack
+  kView3d,                ///< planes across the view through a 3D texture (default)
+  kShells                 ///< spheres round the eye through a 3D texture: equal distances in a perspective
+};
+
+/// What pre-integration takes the field for between two slices.
+enum class SlabShape {
+  kLinear,  ///< linear along the ray: one segment (Engel, Kraus, Ertl 2001)
+  kCurved   ///< the parabola through a third sample, in the middle: as many segments as it bends (default)
+};
+
+/// How grids are drawn by slices; more in slicing.h.
+struct SlicingSettings {
+  SlicingKind kind = SlicingKind::kView3d;
+  int slices = 0;  ///< along the diagonal of the grid, in [1, kMostSlices]; 0: as the rate says
+  SlabShape slabs = SlabShape::kCurved;
+  double slices_per_voxel = 2.0;  ///< the rate: a mean distance of values, in (0, 64]
 };
 
 /// What turns a segment into colour and opacity.
@@ -75,6 +99,7 @@ struct RenderSettings {
   Filter filter;                                ///< how a grid's field is reconstructed
   double samples_per_voxel = 0.0;  ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
   ProjectionSettings projection;   ///< of the sources kProject and kVicp
+  SlicingSettings slicing;         ///< of the source kSlices
   Lighting lighting;
   std::vector<Isosurface> surfaces;
   Clipping clipping;
@@ -94,6 +119,7 @@ struct RenderStatistics {
   std::uint64_t segments = 0;      ///< ray-cell segments, as walked or marched
   std::uint64_t rays = 0;          ///< rays that met the data
   std::uint64_t stopped_rays = 0;  ///< rays stopped by the bound on steps (damaged meshes only)
+  int slices = 0;                  ///< slabs between slices that were drawn (source kSlices)
   int threads = 0;
   std::string backend;              ///< "cpu" or "gl"
   std::string device;               ///< gl: what OpenGL calls its renderer
@@ -102,7 +128,7 @@ struct RenderStatistics {
   std::string integrator;           ///< name of the one that drew; "domain" for functions of several variables
 };
 
-/// Names of enumerators as on the command line and in scene files ("walk", "project", "vicp", "march";
+/// Names of enumerators as on the command line and in scene files ("walk", "project", "vicp", "march", "slices";
 /// "antiderivative", "partial", "post", "pre", "table3d", "polynomial", "cylindrical"), and back.
 std::string name_of(Source source);
 std::string name_of(Integrator integrator);

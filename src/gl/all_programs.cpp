@@ -3,6 +3,7 @@
 #include "src/gl/march_passes.h"
 #include "src/gl/projection_passes.h"
 #include "src/gl/segment_lists.h"
+#include "src/gl/slice_programs.h"
 #include "src/gl/table_maker.h"
 #include "src/gl/walk_passes.h"
 
@@ -39,6 +40,24 @@ void add_projection(std::vector<ProgramRecipe>& programs) {
   }
 }
 
+void add_slices(std::vector<ProgramRecipe>& programs) {
+  programs.push_back({"slices, box", recipe_of_box()});
+  programs.push_back({"slices, filter", recipe_of_filter()});
+  programs.push_back({"slices, stack", {recipe_of_stack()}});
+  programs.push_back({"slices, gradients", {recipe_of_gradients()}});
+  for (const SliceVariant& variant : slice_variants())
+    for (const IntegratorShader& integrator : all_integrator_shaders()) {
+      const bool is_segment = variant.classification == SliceClassification::kSegment;
+      if (is_segment &&
+          (integrator.name == "cell data" || integrator.name == "post" || integrator.name == "cylindrical"))
+        continue;
+      if (!is_segment && integrator.name != "post") continue;  // looks nothing up
+      const std::string key = key_of(integrator, variant);
+      programs.push_back({"slab " + key, recipe_of_slab(integrator, variant)});
+      if (variant.is_half_angle) programs.push_back({"light " + key, recipe_of_light(integrator, variant)});
+    }
+}
+
 }  // namespace
 
 std::vector<ProgramRecipe> all_programs() {
@@ -48,6 +67,7 @@ std::vector<ProgramRecipe> all_programs() {
   for (const MarchKind& kind : march_kinds())
     programs.push_back({"march, " + kind.shader.name, {recipe_of_march(kind)}});
   for (const auto& [name, stages] : recipes_of_tables()) programs.push_back({"tables, " + name, stages});
+  add_slices(programs);
   return programs;
 }
 

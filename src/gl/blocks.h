@@ -22,6 +22,9 @@ struct WalkBlock {
 struct MarchBlock {
 #include "src/gl/shaders/march_block.glsl"
 };
+struct SliceBlock {
+#include "src/gl/shaders/slice_block.glsl"
+};
 struct TablesBlock {
 #include "src/gl/shaders/integrators/tables_block.glsl"
 };
@@ -37,5 +40,6 @@ struct ProjectionBlock {
 static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 6 * 16 &&
               sizeof(PreintegrationBlock) == 3 * 16 && sizeof(MakerBlock) == 4 * 16 &&
               sizeof(ProjectionBlock) == 4 * 16 && sizeof(MarchBlock) == 9 * 16);
+static_assert(sizeof(SliceBlock) == (9 + 8 + 8 + 4 + 6) * 16);
 
 }  // namespace tetravox::gl

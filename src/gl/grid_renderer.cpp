@@ -4,6 +4,8 @@
 #include "src/gl/integrator_tables.h"
 #include "src/gl/march_bricks.h"
 #include "src/gl/march_passes.h"
+#include "src/gl/slice_block.h"
+#include "src/gl/slice_passes.h"
 #include "src/grid/frame.h"
 #include "src/optics/steepness_table.h"
 #include "src/scene/brick_plan.h"
@@ -64,9 +66,9 @@ class GridRenderer final : public scene::FrameRenderer {
   }
   std::uint64_t bytes() const override {
     return device_->values.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->bricks.bytes() +
-           device_->nodes.bytes() + device_->march.bytes();
+           device_->nodes.bytes() + device_->march.bytes() + device_->slices.bytes();
   }
-  std::vector<Source> sources() const override { return {Source::kMarch}; }
+  std::vector<Source> sources() const override { return {Source::kMarch, Source::kSlices}; }
   double diagonal() const override { return scene::diagonal_of(grid_.bounds); }
 
  private:
@@ -79,6 +81,7 @@ class GridRenderer final : public scene::FrameRenderer {
     MarchBricks bricks;
     FilteredNodes nodes;
     MarchPasses march;
+    SlicePasses slices;
   };
 
   optics::ScalarMap scalar_map() const { return {grid_.scalar_offset, grid_.scalar_scale}; }
@@ -89,6 +92,8 @@ class GridRenderer final : public scene::FrameRenderer {
   const PreparedGrid& drawn() const { return field_.middles ? *field_.middles : grid_; }
   scene::PlanSources plan_sources(const RenderSettings& settings) const;
   void plan(const RenderSettings& settings);
+  void slice(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context, Image& image,
+             RenderStatistics& statistics);
   FilteredBricks filtered_bricks(const scene::PlanSources& sources, const RenderSettings& settings) const;
   MarchKind kind_of(const RenderSettings& settings) const;
   MarchBlock describe(const scene::GridView& view, const RenderSettings& settings) const;
@@ -183,20 +188,40 @@ MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSetti
   return block;
 }
 
+/// A frame by the source `slices`: of the grid as it is, whatever the filter.
+void GridRenderer::slice(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context,
+                         Image& image, RenderStatistics& statistics) {
+  require_sliceable(grid_, settings);
+  const auto current = context_->make_current();
+  Device& device = *device_;
+  const grid::GridFrame frame = grid::make_grid_frame(grid_.data.shape);
+  const scene::GridView view = scene::make_grid_view(grid_, frame, camera, settings.width, settings.height);
+  device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);
+  device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, context_->limits(),
+                     context.progress, filters_slices(settings));
+  device.slices.draw(
+      {grid_, frame, view, device.values, device.tables, device.frame, settings, *context_, context.progress},
+      statistics);
+  device.frame.download(image);
+  context_->require_no_error("drawing");
+  note_backend(*context_, statistics);
+}
+
 void GridRenderer::render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context,
                           Image& image, RenderStatistics& statistics) {
-  require_supported(settings);
   if (settings.integrator == Integrator::kCylindrical)
     throw Error(ErrorCode::kInvalidArgument,
                 "the integrator 'cylindrical' is for meshes: choose another (tetravox list methods)");
+  if (has_domain_)
+    throw Error(ErrorCode::kUnsupported,
+                "the OpenGL backend does not know functions of several variables yet: draw with --backend cpu");
+  if (settings.source == Source::kSlices) return slice(camera, settings, context, image, statistics);
+  require_supported(settings);
   // The spline would have to pass through the densities of each function: no table of the values does that.
   if (settings.integrator == Integrator::kPre && settings.filter.kind == FilterKind::kInterpolatingBspline)
     throw Error(
         ErrorCode::kInvalidArgument,
         "pre-classification does not go with the filter 'bspline-interpolating': choose 'bspline' or 'catmull-rom'");
-  if (has_domain_)
-    throw Error(ErrorCode::kUnsupported,
-                "the OpenGL backend does not know functions of several variables yet: draw with --backend cpu");
   const auto current = context_->make_current();
   Device& device = *device_;
   const support::Timer timer;

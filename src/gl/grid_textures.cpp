@@ -21,6 +21,7 @@ std::uint64_t texel_bytes(GLenum format) {
     case GL_R32F:
       return 4;
     case GL_RGBA16:
+    case GL_RGBA16F:
       return 8;
     default:
       break;

@@ -47,7 +47,7 @@ struct MarchFrame {
   /// With nodes: puts those of the next bricks on the device; false where they are the last.
   std::function<bool()> next_bricks = {};
   std::function<void()> begin_bricks = {};  ///< before the first of them
-  int row_begin = 0, row_end = 0;      ///< set by `MarchPasses::draw`, which takes a part of the picture at a time
+  int row_begin = 0, row_end = 0;           ///< set by `MarchPasses::draw`, which takes a part of the picture at a time
 };
 
 /// With the context current.

@@ -134,10 +134,11 @@ std::vector<SourceMethods> gl_methods() {
                        source,
                        {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d,
                         Integrator::kPolynomial, Integrator::kPost, Integrator::kCylindrical}});
-  methods.push_back({"gl",
-                     Source::kMarch,
-                     {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d, Integrator::kPolynomial,
-                      Integrator::kPost, Integrator::kPre}});
+  for (const Source source : {Source::kMarch, Source::kSlices})
+    methods.push_back({"gl",
+                       source,
+                       {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d,
+                        Integrator::kPolynomial, Integrator::kPost, Integrator::kPre}});
   return methods;
 }
 

@@ -3,6 +3,7 @@
 #include "tetravox/error.h"
 #include "tetravox/multidimensional.h"
 #include "tetravox/render.h"
+#include "tetravox/slicing.h"
 
 #include <array>
 #include <string_view>
@@ -17,12 +18,27 @@ struct Name {
   std::string_view description;
 };
 
-constexpr std::array<Name<Source>, 4> kSources{
+constexpr std::array<Name<Source>, 5> kSources{
     {{Source::kWalk, "walk", "meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)"},
      {Source::kProject, "project",
       "meshes, --backend gl: projected tetrahedra (Shirley and Tuchman 1990; Wilhelms and Van Gelder 1991)"},
      {Source::kVicp, "vicp", "meshes, --backend gl: view-independent cell projection (Weiler, Kraus, Merz, Ertl 2003)"},
-     {Source::kMarch, "march", "grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)"}}};
+     {Source::kMarch, "march", "grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)"},
+     {Source::kSlices, "slices",
+      "grids, --backend gl: slabs between slices, blended; slices=KIND (Engel and Ertl 2002)"}}};
+
+constexpr std::array<Name<SlicingKind>, 5> kSlicingKinds{
+    {{SlicingKind::kObject2d, "object-2d", "the 2D textures of the stack most across the view, one by one"},
+     {SlicingKind::kObject2dInterpolated, "object-2d-interpolated",
+      "slices between them too, interpolated from two textures (Rezk-Salama et al. 2000)"},
+     {SlicingKind::kStripes2d, "stripes-2d",
+      "planes across the view, cut into stripes between 2D textures (Engel and Ertl 2002)"},
+     {SlicingKind::kView3d, "view-3d", "planes across the view through a 3D texture (Cullip and Neumann 1993)"},
+     {SlicingKind::kShells, "shells", "spheres round the eye (LaMar, Hamann, Joy 1999)"}}};
+
+constexpr std::array<Name<SlabShape>, 2> kSlabShapes{
+    {{SlabShape::kLinear, "linear", "one segment, linear between two slices (Engel, Kraus, Ertl 2001)"},
+     {SlabShape::kCurved, "curved", "as many as the field bends, by a third sample in the middle (default)"}}};
 
 constexpr std::array<Name<CellSort>, 5> kCellSorts{
     {{CellSort::kCentroid, "centroid", "cells by the distance of centroids: wrong now and then"},
@@ -91,10 +107,12 @@ constexpr std::array<Name<LightKind>, 3> kLightKinds{{{LightKind::kHeadlight, "h
                                                       {LightKind::kDirectional, "directional", "parallel rays"},
                                                       {LightKind::kPoint, "point", "shines from a place"}}};
 
-constexpr std::array<Name<ShadowKind>, 3> kShadowKinds{
+constexpr std::array<Name<ShadowKind>, 4> kShadowKinds{
     {{ShadowKind::kNone, "none", "light reaches everything"},
      {ShadowKind::kVolume, "volume", "optical depth towards each light, on a lattice that it sees"},
-     {ShadowKind::kExact, "exact", "a ray from each light to each place that is lit: sharp, slow, for stills"}}};
+     {ShadowKind::kExact, "exact", "a ray from each light to each place that is lit: sharp, slow, for stills"},
+     {ShadowKind::kHalfAngle, "half-angle",
+      "source slices: slices half way between view and light (Kniss, Premoze, Hansen, Ebert 2002)"}}};
 
 constexpr std::array<Name<VariableKind>, 3> kVariableKinds{
     {{VariableKind::kValue, "value", "the value drawn"},
@@ -212,6 +230,38 @@ std::vector<std::pair<std::string, std::string>> entry_order_names() { return li
 std::vector<std::pair<std::string, std::string>> opacity_weight_names() { return list_names(kOpacityWeights); }
 std::vector<std::pair<std::string, std::string>> gradient_method_names() { return list_names(kGradientMethods); }
 std::vector<std::pair<std::string, std::string>> shadow_kind_names() { return list_names(kShadowKinds); }
+
+std::string name_of(SlicingKind kind) { return name_of_enumerator(kSlicingKinds, kind); }
+SlicingKind slicing_kind_from_name(const std::string& name) {
+  return enumerator_from_name(kSlicingKinds, name, "kind of slices");
+}
+std::vector<std::pair<std::string, std::string>> slicing_kind_names() { return list_names(kSlicingKinds); }
+
+std::string name_of(SlabShape shape) { return name_of_enumerator(kSlabShapes, shape); }
+SlabShape slab_shape_from_name(const std::string& name) {
+  return enumerator_from_name(kSlabShapes, name, "shape of slabs");
+}
+std::vector<std::pair<std::string, std::string>> slab_shape_names() { return list_names(kSlabShapes); }
+
+std::string name_of(const SourceChoice& choice) {
+  std::string name = name_of(choice.source);
+  if (choice.source == Source::kSlices) name.append("=").append(name_of(choice.slicing));
+  return name;
+}
+
+SourceChoice source_choice_from_name(const std::string& name) {
+  constexpr std::string_view kWithKind = "slices=";
+  if (!name.starts_with(kWithKind)) return {.source = source_from_name(name)};
+  return {Source::kSlices, slicing_kind_from_name(name.substr(kWithKind.size()))};
+}
+
+void validate_slicing(const SlicingSettings& settings) {
+  if (settings.slices < 0 || settings.slices > kMostSlices)
+    throw Error(ErrorCode::kInvalidArgument,
+                "slices must be between 0 (as the rate says) and " + std::to_string(kMostSlices));
+  if (!(settings.slices_per_voxel > 0.0 && settings.slices_per_voxel <= 64.0))
+    throw Error(ErrorCode::kInvalidArgument, "slices per voxel must be above 0 and at most 64");
+}
 
 std::string name_of(VariableKind kind) { return name_of_enumerator(kVariableKinds, kind); }
 std::string name_of(WidgetShape shape) { return name_of_enumerator(kWidgetShapes, shape); }

@@ -4,6 +4,7 @@
 #include "src/support/timer.h"
 #include "tetravox/error.h"
 #include "tetravox/render.h"
+#include "tetravox/slicing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,6 +76,7 @@ void validate_settings(const RenderSettings& settings) {
   validate_lighting(settings.lighting);
   validate_isosurfaces(settings.surfaces);
   validate_clipping(settings.clipping);
+  validate_slicing(settings.slicing);
   if (settings.threads < 0 || settings.threads > 4096) fail("threads must be between 0 (all cores) and 4096");
 }
 
@@ -116,6 +118,9 @@ void require_clip_volumes(const Clipping& clipping, const std::vector<const Prep
 }
 
 void require_source(const RenderSettings& settings, const std::vector<Source>& sources) {
+  if (settings.lighting.shadows == ShadowKind::kHalfAngle && settings.source != Source::kSlices)
+    throw Error(ErrorCode::kUnsupported,
+                "shadows 'half-angle' are for grids by the source 'slices': choose it, or 'volume' or 'exact'");
   if (!settings.source || std::ranges::find(sources, *settings.source) != sources.end()) return;
   const bool is_grid = sources.front() == Source::kMarch;
   std::string names;

@@ -154,7 +154,8 @@ Json write_clip_shape(const ClipShape& shape) {
 
 Lighting read_lighting(const JsonPlace& place) {
   place.require_keys({"lights", "environment", "material", "gradient", "gradient_threshold", "two_sided", "shadows",
-                      "shadow_resolution", "ambient_occlusion", "occlusion_seed"});
+                      "shadow_resolution", "translucency", "translucency_angle", "ambient_occlusion",
+                      "occlusion_seed"});
   Lighting lighting;
   if (const auto lights = place.find("lights"))
     for (std::size_t i = 0; i < lights->size(); ++i) lighting.lights.push_back(read_light(lights->at(i)));
@@ -168,6 +169,8 @@ Lighting read_lighting(const JsonPlace& place) {
     lighting.shadows = at_place(*shadows, [&] { return shadow_kind_from_name(shadows->string()); });
   if (const auto resolution = place.find("shadow_resolution"))
     lighting.shadow_resolution = static_cast<int>(resolution->integer(8, 512));
+  read_number(place, "translucency", lighting.translucency);
+  read_number(place, "translucency_angle", lighting.translucency_angle);
   if (const auto occlusion = place.find("ambient_occlusion"))
     lighting.ambient_occlusion = static_cast<int>(occlusion->integer(0, 1024));
   if (const auto seed = place.find("occlusion_seed")) lighting.occlusion_seed = read_seed(*seed);
@@ -192,6 +195,10 @@ Json write_lighting(const Lighting& lighting) {
   json["two_sided"] = lighting.is_two_sided;
   json["shadows"] = name_of(lighting.shadows);
   json["shadow_resolution"] = lighting.shadow_resolution;
+  if (lighting.shadows == ShadowKind::kHalfAngle) {
+    json["translucency"] = lighting.translucency;
+    json["translucency_angle"] = lighting.translucency_angle;
+  }
   json["ambient_occlusion"] = lighting.ambient_occlusion;
   json["occlusion_seed"] = lighting.occlusion_seed;
   return json;

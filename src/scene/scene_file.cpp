@@ -3,6 +3,7 @@
 #include "src/scene/scene_multidimensional.h"
 #include "tetravox/error.h"
 #include "tetravox/scene.h"
+#include "tetravox/slicing.h"
 
 #include <cmath>
 #include <cstddef>
@@ -131,9 +132,21 @@ ProjectionSettings read_projection(const JsonPlace& place) {
 
 void read_render(const JsonPlace& place, RenderSettings& settings) {
   place.require_keys({"source", "projection", "integrator", "preintegration", "filter", "tolerance", "samples",
-                      "samples_per_voxel", "opacity_weight", "opacity_weight_scale", "early_ray_termination"});
-  if (const auto source = place.find("source"))
-    settings.source = at_place(*source, [&] { return source_from_name(source->string()); });
+                      "samples_per_voxel", "slices", "slices_per_voxel", "slabs", "opacity_weight",
+                      "opacity_weight_scale", "early_ray_termination"});
+  if (const auto source = place.find("source")) {
+    const SourceChoice choice = at_place(*source, [&] { return source_choice_from_name(source->string()); });
+    settings.source = choice.source;
+    settings.slicing.kind = choice.slicing;
+  }
+  if (const auto slices = place.find("slices"))
+    settings.slicing.slices = static_cast<int>(slices->integer(1, kMostSlices));
+  if (const auto slabs = place.find("slabs"))
+    settings.slicing.slabs = at_place(*slabs, [&] { return slab_shape_from_name(slabs->string()); });
+  if (const auto rate = place.find("slices_per_voxel")) {
+    settings.slicing.slices_per_voxel = rate->number();
+    at_place(*rate, [&] { validate_slicing(settings.slicing); });
+  }
   if (const auto projection = place.find("projection")) settings.projection = read_projection(*projection);
   if (const auto integrator = place.find("integrator"))
     at_place(*integrator, [&] { parse_integrator(integrator->string(), settings); });
@@ -245,7 +258,7 @@ Json write_projection(const ProjectionSettings& settings) {
 
 Json write_render(const RenderSettings& settings) {
   Json json;
-  if (settings.source) json["source"] = name_of(*settings.source);
+  if (settings.source) json["source"] = name_of(SourceChoice{*settings.source, settings.slicing.kind});
   if (settings.projection != ProjectionSettings{}) json["projection"] = write_projection(settings.projection);
   json["integrator"] = format_integrator(settings);
   const Json tables = write_preintegration(settings.preintegration);
@@ -254,6 +267,10 @@ Json write_render(const RenderSettings& settings) {
   json["tolerance"] = settings.tolerance;
   json["samples"] = settings.samples;
   if (settings.samples_per_voxel > 0.0) json["samples_per_voxel"] = settings.samples_per_voxel;
+  if (settings.slicing.slabs != SlabShape::kCurved) json["slabs"] = name_of(settings.slicing.slabs);
+  if (settings.slicing.slices > 0) json["slices"] = settings.slicing.slices;
+  if (settings.slicing.slices_per_voxel != SlicingSettings{}.slices_per_voxel)
+    json["slices_per_voxel"] = settings.slicing.slices_per_voxel;
   if (settings.opacity_weight != OpacityWeight::kNone) {
     json["opacity_weight"] = name_of(settings.opacity_weight);
     json["opacity_weight_scale"] = settings.opacity_weight_scale;

@@ -85,6 +85,8 @@ void validate_lighting(const Lighting& lighting) {
   require_number("material, shininess", material.shininess, 1.0, 1000.0);
   require_number("gradient threshold", lighting.gradient_threshold, 0.0, 1e30);
   require_number("shadow resolution", lighting.shadow_resolution, 8, 512);
+  require_number("translucency", lighting.translucency, 0.0, 1.0);
+  require_number("translucency angle", lighting.translucency_angle, 0.0, 80.0);
   require_number("ambient occlusion", lighting.ambient_occlusion, 0, 1024);
 }
 

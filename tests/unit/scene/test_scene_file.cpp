@@ -1,5 +1,6 @@
 #include "tests/unit/optics/expect_error.h"
 #include "tetravox/scene.h"
+#include "tetravox/slicing.h"
 
 #include <gtest/gtest.h>
 
@@ -66,6 +67,10 @@ void expect_same(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.settings.filter, b.settings.filter);
   EXPECT_EQ(a.settings.samples_per_voxel, b.settings.samples_per_voxel);
   EXPECT_EQ(a.settings.projection, b.settings.projection);
+  EXPECT_EQ(a.settings.slicing.kind, b.settings.slicing.kind);
+  EXPECT_EQ(a.settings.slicing.slices, b.settings.slicing.slices);
+  EXPECT_EQ(a.settings.slicing.slabs, b.settings.slicing.slabs);
+  EXPECT_EQ(a.settings.slicing.slices_per_voxel, b.settings.slicing.slices_per_voxel);
   EXPECT_EQ(a.settings.tolerance, b.settings.tolerance);
   EXPECT_EQ(a.settings.samples, b.settings.samples);
   EXPECT_EQ(a.settings.use_early_ray_termination, b.settings.use_early_ray_termination);
@@ -129,6 +134,13 @@ Scene random_scene(std::mt19937& random) {
     scene.settings.projection = {static_cast<CellSort>(pick(5)), static_cast<Decomposition>(pick(2)),
                                  unit(random) < 0.5, static_cast<MeshTransfer>(pick(2))};
   if (unit(random) < 0.7) scene.settings.source = unit(random) < 0.5 ? Source::kWalk : Source::kMarch;
+  if (unit(random) < 0.3) {
+    scene.settings.source = Source::kSlices;
+    scene.settings.slicing.kind = static_cast<SlicingKind>(static_cast<int>(5.0 * unit(random)));
+  }
+  if (unit(random) < 0.5) scene.settings.slicing.slices = 1 + static_cast<int>(kMostSlices * 0.99 * unit(random));
+  if (unit(random) < 0.5) scene.settings.slicing.slabs = SlabShape::kLinear;
+  if (unit(random) < 0.5) scene.settings.slicing.slices_per_voxel = 0.01 + 63.0 * unit(random);
   scene.settings.filter.kind = static_cast<FilterKind>(static_cast<int>(unit(random) * 7));
   if (scene.settings.filter.kind == FilterKind::kLanczos)
     scene.settings.filter.radius = 2 + static_cast<int>(unit(random) * 7);
@@ -358,6 +370,14 @@ TEST(RenderNames, GoThereAndBack) {
     EXPECT_EQ(name_of(integrator_from_name(name)), name);
     EXPECT_FALSE(description.empty());
   }
+  for (const auto& [name, description] : slab_shape_names()) EXPECT_EQ(name_of(slab_shape_from_name(name)), name);
+  for (const auto& [name, description] : slicing_kind_names()) {
+    EXPECT_EQ(name_of(slicing_kind_from_name(name)), name);
+    EXPECT_EQ(name_of(source_choice_from_name("slices=" + name)), "slices=" + name);
+  }
+  EXPECT_EQ(source_choice_from_name("slices").slicing, SlicingKind::kView3d);
+  EXPECT_EQ(name_of(source_choice_from_name("march")), "march");
+  EXPECT_THROW(source_choice_from_name("slices=4d"), Error);
   for (const auto& [name, description] : source_names()) EXPECT_EQ(name_of(source_from_name(name)), name);
   expect_error(
       ErrorCode::kInvalidArgument, [] { integrator_from_name("magic"); }, "magic", "antiderivative, partial, post");
