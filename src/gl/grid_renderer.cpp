@@ -61,12 +61,12 @@ class GridRenderer final : public scene::FrameRenderer {
   void render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context, Image& image,
               RenderStatistics& statistics) override;
 
-  std::uint64_t missing_bytes(const RenderSettings& settings) const override {
-    return estimate_render_memory(grid_.data, settings);
-  }
+  std::uint64_t missing_bytes(const RenderSettings& settings) const override;
   std::uint64_t bytes() const override {
-    return device_->values.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->bricks.bytes() +
-           device_->nodes.bytes() + device_->march.bytes() + device_->slices.bytes();
+    const Device& device = *device_;
+    return device.values.bytes() + device.frame.bytes() + device.tables.bytes() + device.bricks.bytes() +
+           device.nodes.bytes() + device.march.bytes() + device.slices.bytes() +
+           plans_.size() * sizeof(scene::BrickPlan) + field_.coefficients.size() * sizeof(float);
   }
   std::vector<Source> sources() const override { return {Source::kMarch, Source::kSlices}; }
   double diagonal() const override { return scene::diagonal_of(grid_.bounds); }
@@ -96,6 +96,13 @@ class GridRenderer final : public scene::FrameRenderer {
              RenderStatistics& statistics);
   FilteredBricks filtered_bricks(const scene::PlanSources& sources, const RenderSettings& settings) const;
   MarchKind kind_of(const RenderSettings& settings) const;
+  /// Where every fetch is a call, as of software, fewer and larger ones pay; hardware has caches and units for them.
+  bool wants_squares(const RenderSettings& settings) const {
+    return context_->device().is_software && !scene::wants_kernel(settings.filter) && !is_constant(settings) &&
+           settings.integrator != Integrator::kPre;
+  }
+  void march(const scene::GridView& view, const RenderSettings& settings, const scene::FrameContext& context,
+             RenderStatistics& statistics);
   MarchBlock describe(const scene::GridView& view, const RenderSettings& settings) const;
 
   const PreparedGrid& grid_;
@@ -108,6 +115,20 @@ class GridRenderer final : public scene::FrameRenderer {
   scene::PlanSettings planned_for_;
   bool is_planned_ = false, has_domain_ = false;
 };
+
+std::uint64_t GridRenderer::missing_bytes(const RenderSettings& settings) const {
+  const std::uint64_t pixels = static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height);
+  std::uint64_t of_values = 0;
+  if (scene::wants_kernel(settings.filter)) {
+    constexpr std::uint64_t kNodes = (8 * kBrickCells + 1) * (8 * kBrickCells + 1) * (8 * kBrickCells + 1);
+    const std::uint64_t texel = settings.integrator == Integrator::kPre ? 16 : 4;
+    // Here and on the device.
+    of_values = 2 * texel * std::min<std::uint64_t>(kNodes * grid_.bricks.count(), FilteredNodes::kMostTexels);
+  } else if (wants_squares(settings)) {
+    of_values = GridTexture::bytes_of_squares(device_->values.volume());
+  }
+  return estimate_render_memory(grid_.data, settings) + pixels * MarchPasses::kPauseBytes + of_values;
+}
 
 scene::PlanSources GridRenderer::plan_sources(const RenderSettings& settings) const {
   return {&drawn(), &field_, &steepness_, device_->tables.node_width(), diagonal(), is_constant(settings), false, {}};
@@ -207,6 +228,34 @@ void GridRenderer::slice(const Camera& camera, const RenderSettings& settings, c
   note_backend(*context_, statistics);
 }
 
+/// Draws with everything bound but the values.
+void GridRenderer::march(const scene::GridView& view, const RenderSettings& settings,
+                         const scene::FrameContext& context, RenderStatistics& statistics) {
+  Device& device = *device_;
+  MarchKind kind = kind_of(settings);
+  kind.shader = takes_points(kind) ? IntegratorTables::point_shader() : device.tables.shader(settings);
+  device.values.volume().bind(kValueUnit);
+  if (const Volume* squares = wants_squares(settings) ? device.values.squares(*context_) : nullptr) {
+    squares->bind(kSquareUnit);
+    kind.has_squares = true;
+  }
+  MarchFrame frame{describe(view, settings), kind, device.frame, settings, context_->limits(), context.progress};
+  const scene::PlanSources sources = plan_sources(settings);
+  const FilteredBricks filtered = filtered_bricks(sources, settings);
+  std::vector<NodePlace> places;
+  if (kind.has_nodes) {
+    frame.begin_bricks = [&] { device.nodes.begin(frame_, view, filtered, context_->limits()); };
+    frame.next_bricks = [&] {
+      const bool has_more = device.nodes.next(filtered, context.progress, places);
+      device.bricks.place_nodes(places);
+      device.bricks.bind();
+      device.nodes.bind(kValueUnit);
+      return has_more;
+    };
+  }
+  device.march.draw(frame, statistics);
+}
+
 void GridRenderer::render(const Camera& camera, const RenderSettings& settings, const scene::FrameContext& context,
                           Image& image, RenderStatistics& statistics) {
   if (settings.integrator == Integrator::kCylindrical)
@@ -226,37 +275,13 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
   Device& device = *device_;
   const support::Timer timer;
   plan(settings);
-  const scene::GridView view = scene::make_grid_view(drawn(), frame_, camera, settings.width, settings.height);
-  device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);
-  device.values.volume().bind(kValueUnit);
-  device.bricks.bind();
   device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, context_->limits(),
                      context.progress, field_.kernel != nullptr);
   statistics.plan_seconds = timer.seconds();
-  MarchKind kind = kind_of(settings);
-  kind.shader = takes_points(kind) ? IntegratorTables::point_shader() : device.tables.shader(settings);
-  // Where every fetch is a call, as of software, fewer and larger ones pay; hardware has caches and units for them.
-  const bool wants_squares =
-      context_->device().is_software && !kind.has_nodes && !kind.is_constant && kind.integrator != Integrator::kPre;
-  if (const Volume* squares = wants_squares ? device.values.squares(*context_) : nullptr) {
-    squares->bind(kSquareUnit);
-    kind.has_squares = true;
-  }
-  MarchFrame march{describe(view, settings), kind, device.frame, settings, context_->limits(), context.progress};
-  const scene::PlanSources sources = plan_sources(settings);
-  const FilteredBricks filtered = filtered_bricks(sources, settings);
-  std::vector<NodePlace> places;
-  if (march.kind.has_nodes) {
-    march.begin_bricks = [&] { device.nodes.begin(frame_, view, filtered, context_->limits()); };
-    march.next_bricks = [&] {
-      const bool has_more = device.nodes.next(filtered, context.progress, places);
-      device.bricks.place_nodes(places);
-      device.bricks.bind();
-      device.nodes.bind(kValueUnit);
-      return has_more;
-    };
-  }
-  device.march.draw(march, statistics);
+  const scene::GridView view = scene::make_grid_view(drawn(), frame_, camera, settings.width, settings.height);
+  device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);
+  device.bricks.bind();
+  march(view, settings, context, statistics);
   device.frame.download(image);
   context_->require_no_error("drawing");
   note_backend(*context_, statistics);

@@ -160,8 +160,7 @@ GridTexture::GridTexture(const PreparedGrid& grid, const Context& context) : gri
 }
 
 const Volume* GridTexture::squares(const Context& context) {
-  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
-  if (4 * volume_.bytes() > kMostBytes) return nullptr;
+  if (bytes_of_squares(volume_) == 0) return nullptr;
   if (has_tried_squares_) return squares_.get() ? &squares_ : nullptr;
   has_tried_squares_ = true;
   SliceReader slices(grid_);

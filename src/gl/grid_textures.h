@@ -47,10 +47,16 @@ class GridTexture {
   /// The same with four values in each texel: (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1), made when it is first
   /// asked for. Two fetches are all corners of a cell then, for four times the memory. Null where that is too much.
   const Volume* squares(const Context& context);
+  /// What they take; 0 where that is too much.
+  static std::uint64_t bytes_of_squares(const Volume& values) {
+    return 4 * values.bytes() > kMostBytesOfSquares ? 0 : 4 * values.bytes();
+  }
   const TexelMap& map() const { return map_; }
   std::uint64_t bytes() const { return volume_.bytes() + squares_.bytes(); }
 
  private:
+  static constexpr std::uint64_t kMostBytesOfSquares = std::uint64_t{1} << 30;
+
   const PreparedGrid& grid_;
   Volume volume_, squares_;
   TexelMap map_;

@@ -17,7 +17,6 @@ struct Counters {
   std::uint32_t unfinished_count = 0, waiting_count = 0, met_count = 0;
   std::array<std::uint32_t, 64> segments{};
 };
-constexpr std::size_t kPauseBytes = 48;
 
 std::string marcher_file(const MarchKind& kind) {
   if (kind.is_constant) return "march_constants.glsl";

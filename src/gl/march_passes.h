@@ -10,6 +10,7 @@
 #include "tetravox/progress.h"
 #include "tetravox/render.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -53,6 +54,9 @@ struct MarchFrame {
 /// With the context current.
 class MarchPasses {
  public:
+  /// What a ray that needs another pass is kept in, each pixel.
+  static constexpr std::size_t kPauseBytes = 48;
+
   /// Draws into the frame's picture. @throws Error (kCancelled).
   void draw(const MarchFrame& frame, RenderStatistics& statistics);
   std::uint64_t bytes() const { return block_.bytes() + counters_.bytes() + pauses_.bytes(); }

@@ -270,6 +270,23 @@ TEST(GlGridRefusals, SayWhatIsNotDrawnYet) {
   expect_refused(settings, "'bspline'");
 }
 
+TEST(GlGridRefusals, SayWhatADeviceCannotHold) {
+  TETRAVOX_REQUIRE_GL();
+  const auto most = static_cast<std::uint32_t>(gl::Context::open({})->limits().volume_size);
+  tests::GridOptions options;
+  options.dimensions = {most + 1, 2, 2};
+  options.type = ScalarType::kUint8;
+  const GridSubject scene(make_grid(options, [](const Vector3& p) { return 100.0 + 90.0 * p[0]; }));
+  try {
+    make_gl_renderer(scene.grid);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(std::to_string(most + 1) + " values along an axis"), std::string::npos)
+        << error.what();
+    EXPECT_EQ(error.code(), ErrorCode::kUnsupported);
+  }
+}
+
 TEST(GlGridSettings, ARendererKeepsNothingOfOtherSettings) {
   TETRAVOX_REQUIRE_GL();
   for (const char* wanted : {"smooth", "cell_data"}) {

@@ -77,7 +77,7 @@ void march_strides(GridRay ray, Lattice l, float stride, float z, float leave, i
 void march_cells(GridRay ray, Lattice l, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
   float steepness = (plan.x & kIsCurved) != 0u ? uintBitsToFloat(plan.y) : 0.0;
   CellWalk walk = enter_lattice(ray, l, z, leave);
-  Front front = front_at(0.0);
+  Front front;
   bool is_fresh = true;
   float scalar_front = 0.0;
   while (walk.front < leave) {
