@@ -369,7 +369,7 @@ void time_first_uses(const Subject& subject, Report& report) {
                {"program", "first frame", "later frames", "difference"});
   const Timer opening;
   Renderer renderer = tetravox::make_gl_renderer(subject.mesh);
-  report.add({"opening the device, mesh into buffers", 1e3 * opening.seconds(), "-", "-"});
+  report.add({"a new renderer: context, mesh into buffers", 1e3 * opening.seconds(), "-", "-"});
   renderer.set_transfer_function(make_pieces(subject.mesh, 255));
   // The first one compiles those of the entries, too.
   for (const Integrator integrator : {Integrator::kPost, Integrator::kAntiderivative, Integrator::kPartial,
