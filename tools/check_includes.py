@@ -40,7 +40,7 @@ FOREIGN = [
     (r"vtk\w*\.h", ["src/io", "tests", "bench", "plugins"]),
     (r"hwy/", ["src/cpu/kernels", "tests"]),
     (r"\w*intrin\.h|arm_(neon|sve)\.h", ["src/cpu/kernels"]),
-    (r"(epoxy|GL|GLES\d?|EGL|GLFW)/", ["src/gl", "tests"]),
+    (r"(epoxy|GL|GLES\d?|EGL|GLFW)/", ["src/gl", "tests", "bench"]),
     (r"(tbb|oneapi)/", ["src", "tests", "bench"]),
     (r"nlohmann/", ["src", "apps", "tests", "bench"]),
     (r"CLI/", ["apps"]),

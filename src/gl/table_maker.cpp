@@ -27,16 +27,20 @@ ShaderRecipe fragment(const std::string& file, bool is_atlas) {
   return recipe;
 }
 
-/// Extinction and colour at equal distances over the table's scalars.
+/// Extinction and colour at equal distances over the table's scalars. There is colour where nothing is seen, too: it
+/// mixes with that beside it.
 std::vector<std::array<float, 4>> sample_function(const optics::PreintegrationSource& source) {
   const optics::ControlPointTable points = optics::build_control_point_table(source.function, source.map);
+  OpticalFunction opaque = source.function;
+  for (OpticalPoint& point : opaque.points) point.extinction = 1.0;
+  const optics::ControlPointTable colors = optics::build_control_point_table(opaque, source.map);
   const ValueRange range = optics::find_table_range(source);
   std::vector<std::array<float, 4>> nodes(kNodes);
   for (int i = 0; i < kNodes; ++i) {
     const double value = range.min + (range.max - range.min) * i / (kNodes - 1);
-    nodes[i] = optics::eval_densities(points, source.map.stored_from_value(value));
-    if (nodes[i][0] > 0.0f)
-      for (int channel = 1; channel < 4; ++channel) nodes[i][channel] /= nodes[i][0];
+    const float stored = source.map.stored_from_value(value);
+    nodes[i] = optics::eval_densities(colors, stored);
+    nodes[i][0] = optics::eval_densities(points, stored)[0];
   }
   return nodes;
 }
@@ -155,6 +159,17 @@ void TableMaker::make_slices(const optics::PreintegrationSource& source, const P
   table.bytes = optics::preintegration_table_bytes(settings.scalars, settings.lengths);
 }
 
+/// Their bits depend on what is least and largest in each map, which is known only now.
+void TableMaker::store_maps(const PreintegrationSettings& settings, const DeviceTable& table) const {
+  const int scalars = settings.scalars, maps = settings.degree + 1;
+  std::vector<float> numbers(4 * static_cast<std::size_t>(maps) * static_cast<std::size_t>(scalars) *
+                             static_cast<std::size_t>(scalars));
+  glGetTextureImage(table.table.get(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(numbers.size() * sizeof(float)),
+                    numbers.data());
+  optics::store_maps_in_bits(settings.bits, static_cast<double>(maker_.most_extinction), scalars, numbers);
+  glTextureSubImage3D(table.table.get(), 0, 0, 0, 0, scalars, scalars, maps, GL_RGBA, GL_FLOAT, numbers.data());
+}
+
 void TableMaker::make_maps(const optics::PreintegrationSource& source, const PreintegrationSettings& settings,
                            DeviceTable& table) {
   const int scalars = settings.scalars, degree = settings.degree;
@@ -195,6 +210,7 @@ void TableMaker::make_maps(const optics::PreintegrationSource& source, const Pre
     glNamedFramebufferDrawBuffer(target_.get(), GL_COLOR_ATTACHMENT0);
     support::throw_if_cancelled(source.progress);
   }
+  if (settings.bits < 32) store_maps(settings, table);
   const std::vector<float> ratios = optics::make_absorbed_ratios(settings.bits);
   table.ratios = make_table_texture(GL_TEXTURE_2D);
   glTextureStorage2D(table.ratios.get(), 1, GL_R32F, static_cast<GLsizei>(ratios.size()), 1);

@@ -53,6 +53,7 @@ class TableMaker {
                    DeviceTable& table);
   void make_maps(const optics::PreintegrationSource& source, const PreintegrationSettings& settings,
                  DeviceTable& table);
+  void store_maps(const PreintegrationSettings& settings, const DeviceTable& table) const;
   void make_atlas(DeviceTable& table);
 
   std::map<std::string, ProgramName> programs_;

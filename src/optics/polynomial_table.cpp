@@ -74,26 +74,6 @@ class ThinColors {
   double least_;
 };
 
-/// Coefficients in fixed point between the least and the largest of their map.
-void store_maps_in_bits(int bits, double largest_extinction, PolynomialTable& table) {
-  if (bits >= 32) return;
-  const std::size_t size = 4 * static_cast<std::size_t>(table.scalars) * static_cast<std::size_t>(table.scalars);
-  for (int map = 0; map <= table.degree; ++map) {
-    float* numbers = table.maps.data() + static_cast<std::size_t>(map) * size;
-    float least = std::numeric_limits<float>::max(), largest = -least;
-    for (std::size_t i = 0; i < size; ++i)
-      if (i % 4 != 3) {
-        least = std::min(least, numbers[i]);
-        largest = std::max(largest, numbers[i]);
-      }
-    const double width = std::max(static_cast<double>(largest) - static_cast<double>(least), 1e-30);
-    const double most = std::max(largest_extinction, 1e-300);
-    for (std::size_t i = 0; i < size; ++i)
-      numbers[i] = i % 4 == 3 ? static_cast<float>(store_in_bits(numbers[i] / most, bits) * most)
-                              : static_cast<float>(store_in_bits((numbers[i] - least) / width, bits) * width + least);
-  }
-}
-
 }  // namespace
 
 PolynomialFit make_polynomial_fit(int degree) {
@@ -109,6 +89,24 @@ std::vector<float> make_absorbed_ratios(int bits) {
     ratios.push_back(store_in_bits(eval_absorbed_ratio(depth), bits < 32 ? 16 : 32));
   }
   return ratios;
+}
+
+void store_maps_in_bits(int bits, double largest_extinction, int scalars, std::span<float> maps) {
+  if (bits >= 32) return;
+  const std::size_t size = 4 * static_cast<std::size_t>(scalars) * static_cast<std::size_t>(scalars);
+  for (; maps.size() >= size; maps = maps.subspan(size)) {
+    float least = std::numeric_limits<float>::max(), largest = -least;
+    for (std::size_t i = 0; i < size; ++i)
+      if (i % 4 != 3) {
+        least = std::min(least, maps[i]);
+        largest = std::max(largest, maps[i]);
+      }
+    const double width = std::max(static_cast<double>(largest) - static_cast<double>(least), 1e-30);
+    const double most = std::max(largest_extinction, 1e-300);
+    for (std::size_t i = 0; i < size; ++i)
+      maps[i] = i % 4 == 3 ? static_cast<float>(store_in_bits(maps[i] / most, bits) * most)
+                           : static_cast<float>(store_in_bits((maps[i] - least) / width, bits) * width + least);
+  }
 }
 
 std::uint64_t polynomial_table_bytes(int scalars, int degree) {
@@ -157,7 +155,7 @@ void build_polynomial_table(const PreintegrationSource& source, const Preintegra
     }
   };
   integrate_pairs(function, {scalars, lengths, settings.steps, &source.progress}, settings.use_incremental, store);
-  store_maps_in_bits(settings.bits, function.largest_extinction(), table);
+  store_maps_in_bits(settings.bits, function.largest_extinction(), scalars, table.maps);
 }
 
 SegmentColor eval_polynomial_table(const PolynomialTable& table, float scalar_front, float scalar_back, float length) {

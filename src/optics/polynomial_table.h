@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tetravox::optics {
@@ -51,6 +52,10 @@ PolynomialFit make_polynomial_fit(int degree);
 
 /// See `PolynomialTable::absorbed_ratios`; `bits`: of the table's numbers.
 std::vector<float> make_absorbed_ratios(int bits);
+
+/// Rounds maps to what so many bits hold: coefficients between the least and the largest of their map, extinctions
+/// between 0 and the largest. Leaves them alone for 32. `maps`: [maps][scalars][scalars][4].
+void store_maps_in_bits(int bits, double largest_extinction, int scalars, std::span<float> maps);
 
 /// The look-up of `polynomial`: with x = mean extinction * min(length, longest), the opacity is x * ratio(x) (linear:
 /// min(1, x)), and each channel is clamp(polynomial(t), 0, 1) * opacity, by Horner's rule from coefficients that are

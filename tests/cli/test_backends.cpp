@@ -53,6 +53,24 @@ TEST_F(Backends, WhatItCannotDrawIsRefusedByName) {
   EXPECT_TRUE(names().empty());
 }
 
+TEST_F(Backends, TablesAreMadeOnTheDeviceOrByTheCpu) {
+  expect_error(run({"render", "builtin:sphere", "--integrator", "table3d", "--preintegration-device", "gpu"}), 1,
+               {"on the GPU", "--backend gl"});
+  expect_error(run({"render", "builtin:sphere", "--backend", "cpu", "--integrator", "polynomial=2",
+                    "--preintegration-device", "gpu"}),
+               1, {"on the GPU", "--backend gl"});
+  EXPECT_TRUE(names().empty());
+  if (!has_device()) GTEST_SKIP() << "there is no device with OpenGL 4.5 by EGL";
+  for (const std::string device : {"cpu", "gpu"}) {
+    const Result result =
+        run({"render", "builtin:duct", "--backend", "gl", "--integrator", "table3d", "--preintegration-size", "64,32",
+             "--preintegration-device", device, "--resolution", "80,60", "-o", device + ".npy"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+  }
+  EXPECT_TRUE(tests::images_agree(tests::read_picture(path("gpu.npy")), tests::read_picture(path("cpu.npy")), 2e-5));
+}
+
 TEST_F(Backends, OptionsOfOpenGlSayThatTheyChangeNothingElsewhere) {
   const Result result = run({"render", "builtin:sphere", "--entry-order", "peeling", "--resolution", "20,20"});
   EXPECT_EQ(result.code, 0);

@@ -74,6 +74,31 @@ TEST_P(GlMeshes, TablesAreLookedUpAsOnTheCpu) {
     }
 }
 
+/// The device samples functions where the CPU takes exact means: close where they are smooth, closer with more steps.
+TEST_P(GlMeshes, TablesOfTheDeviceDrawThePicturesOfThoseOfTheCpu) {
+  TETRAVOX_REQUIRE_GL();
+  const Subject scene = make_any_subject(GetParam());
+  Renderer gl = make_gl_renderer(scene.mesh);
+  const Camera& camera = scene.camera("outside");
+  for (const char* name : {"smooth", "random"}) {
+    const bool is_smooth = name == std::string("smooth");
+    gl.set_transfer_function(scene.function(name));
+    for (const Integrator integrator : {Integrator::kTable3d, Integrator::kPolynomial, Integrator::kCylindrical}) {
+      RenderSettings settings = tests::make_settings(integrator, 77, 53);
+      settings.preintegration.scalars = 48;
+      settings.preintegration.lengths = 16;
+      settings.preintegration.planes = 17;
+      settings.preintegration.tile = 32;
+      settings.preintegration.steps = is_smooth ? 32 : 256;
+      const Image expected = gl.render(camera, settings);
+      settings.preintegration.device = TableDevice::kGpu;
+      const Image image = gl.render(camera, settings);
+      EXPECT_TRUE(tests::is_valid_picture(image)) << name << " " << name_of(integrator);
+      EXPECT_TRUE(tests::images_agree(image, expected, 2e-4, 1e-5)) << name << " " << name_of(integrator);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Data, GlMeshes,
                          ::testing::Values("sphere", "buckyball?cells=20000", "duct?cells=4000", "cell_data"),
                          [](const auto& test) { return test.param.substr(0, test.param.find('?')); });
