@@ -32,6 +32,11 @@ constexpr double kOneStep = 1.0 / 255.0;
 /// Bricks that a ray is taken through in one pass: a fraction of a second on slow devices, which drivers with a
 /// watchdog allow.
 constexpr int kBricksAPass = 64;
+/// Iterations of loops in one pass, about: llvmpipe leaves loops without a word once a shader has gone through 65,535
+/// in all, and a brick can take half of them.
+constexpr int kIterations = 20000;
+/// Samples a segment that a brick's worst case leaves room for.
+constexpr int kMostSamples = 8;
 
 class GridRenderer final : public scene::FrameRenderer {
  public:
@@ -197,6 +202,8 @@ MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSetti
   block.plane_base_y = static_cast<int>(dimensions[0]);
   block.plane_base_z = static_cast<int>(dimensions[0] + dimensions[1]);
   block.bricks_a_pass = kBricksAPass;
+  const int loops = settings.integrator == Integrator::kPost ? 4 + 3 * settings.samples : 4;
+  block.most_work = std::max(kIterations / loops, 1);
   block.texel_offset = device_->values.map().offset;
   block.texel_scale = device_->values.map().scale;
   block.allowed_rate = scene::allowed_rate_of(settings.tolerance, diagonal());
@@ -266,6 +273,10 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
                 "the OpenGL backend does not know functions of several variables yet: draw with --backend cpu");
   if (settings.source == Source::kSlices) return slice(camera, settings, context, image, statistics);
   require_supported(settings);
+  if (settings.integrator == Integrator::kPost && settings.samples > kMostSamples && context_->device().is_software)
+    throw Error(ErrorCode::kUnsupported,
+                "OpenGL without graphics hardware takes at most 8 samples a segment on grids: "
+                "ask for fewer (--samples), or draw with --backend cpu");
   // The spline would have to pass through the densities of each function: no table of the values does that.
   if (settings.integrator == Integrator::kPre && settings.filter.kind == FilterKind::kInterpolatingBspline)
     throw Error(

@@ -17,8 +17,15 @@ constexpr GLuint kCounterBinding = 0, kEntryBinding = 1, kHeadBinding = 2, kPaus
 constexpr GLuint kFrontFaceUnit = 10;
 constexpr GLuint kPictureUnit = 0;  // image
 
-/// Steps of a ray in one pass: a fraction of a second on slow devices, which drivers with a watchdog allow.
-constexpr int kSteps = 4096;
+/// Iterations of loops that a ray may take in one pass: a fraction of a second on slow devices, which drivers with a
+/// watchdog allow; and llvmpipe leaves loops without a word once a shader has gone through 65,535 iterations in all.
+constexpr int kIterations = 24000;
+
+/// Pieces of segments that a ray may be taken through in one pass.
+int steps_of(const RenderSettings& settings) {
+  const int loops = settings.integrator == Integrator::kPost ? 4 + 3 * settings.samples : 4;
+  return std::max(kIterations / loops, 1);
+}
 
 struct Counters {
   std::uint32_t entry_count = 0, unfinished_count = 0, entered_count = 0, stopped_count = 0;
@@ -169,7 +176,7 @@ std::uint64_t WalkPasses::walk(const WalkFrame& frame, WalkBlock& block, RenderS
   const ProgramName& program =
       find_program(programs_, key, [&] { return std::vector{recipe_of_walk(frame.integrator, frame.variant)}; });
   std::uint64_t entered = 0;
-  block.steps = kSteps;
+  block.steps = steps_of(frame.settings);
   block.is_first_pass = 1;
   for (Counters counters;;) {
     upload(block);

@@ -12,6 +12,9 @@ layout(binding = 6) uniform usamplerBuffer bricks;      // [bricks] plan, bits o
 layout(binding = 7) uniform samplerBuffer planes;       // uneven axes: grid coordinates of all lattice planes
 layout(binding = 8) uniform samplerBuffer steepnesses;  // [levels][bins], see src/optics/steepness_table.h
 
+// Pieces that the pass has integrated: loops of a pass are limited (src/gl/march_passes.cpp).
+uint work_done = 0u;
+
 const float kParallel = 1e-6;  // a ray that moves less along an axis is parallel to its planes
 const float kNever = 1e30;
 const float kRounded = 4e-6;   // by what part of itself a depth may be off

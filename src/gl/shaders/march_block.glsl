@@ -13,7 +13,7 @@ int bricks_z;
 int is_first_pass;
 int plane_base_y;    // where the planes of the second axis begin, and of the third
 int plane_base_z;
-int unused_a;
+int most_work;       // pieces that a ray is taken through in a pass, about
 int unused_b;
 float texel_offset;  // stored scalar = texel_offset + texel * texel_scale
 float texel_scale;

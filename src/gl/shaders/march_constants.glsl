@@ -18,5 +18,6 @@ void march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, ino
     if (!is_missing(value)) integrate(Segment(value, value, (back - walk.front) * ray.world_per_z), front, sum);
     leave_cell(ray, l, back, walk);
     ++segments;
+    ++work_done;
   }
 }

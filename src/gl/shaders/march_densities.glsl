@@ -23,5 +23,6 @@ void march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, ino
     }
     leave_cell(ray, l, back, walk);
     ++segments;
+    work_done += 9u + uint(pieces);
   }
 }

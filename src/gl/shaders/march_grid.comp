@@ -47,7 +47,7 @@ void main() {
   walk.z = walk.z_exit = 0.0;
   bool is_done = depths.x >= depths.y;
   if (!is_done) walk = enter_grid(ray, depths.x, depths.y);
-  for (int i = 0; !is_done && i < march.bricks_a_pass; ++i) {
+  for (int i = 0; !is_done && i < march.bricks_a_pass && work_done < uint(march.most_work); ++i) {
     uvec4 plan = uvec4(kTransparent);
     float leave = 0.0;
     while (!is_done) {

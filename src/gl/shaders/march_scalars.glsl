@@ -71,6 +71,7 @@ void march_strides(GridRay ray, Lattice l, float stride, float z, float leave, i
     scalar_front = scalar_back;
   }
   segments += uint(steps);
+  work_done += uint(steps);
 }
 
 // From cell to cell.
@@ -104,6 +105,7 @@ void march_cells(GridRay ray, Lattice l, uvec4 plan, float z, float leave, inout
     }
     leave_cell(ray, l, back, walk);
     ++segments;
+    work_done += 1u + uint(pieces);
   }
 }
 

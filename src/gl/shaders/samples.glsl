@@ -27,7 +27,9 @@ void march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, ino
       carried.depth = depth;
       carried.number += 1.0;
       ++segments;
+      ++work_done;
     }
     leave_cell(ray, l, back, walk);
+    ++work_done;
   }
 }

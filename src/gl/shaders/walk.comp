@@ -108,8 +108,8 @@ void main() {
 #endif
         begin(segment, front);
         ++segment_count;
-        --steps_left;
       }
+      steps_left -= min(steps_left, 1u);
       advance(front, walker.sum);
       is_pending_segment = is_pending(front);
       if (frame.use_early_ray_termination != 0 && is_settled(walker.sum)) {
