@@ -53,13 +53,17 @@ bench:
 papers:
 	@tools/install_dependencies.sh build bench
 	@$(CONFIGURE) -DTETRAVOX_WITH_BENCH=ON
-	@cmake --build --preset release --parallel $(JOBS) --target preintegration_tables papers_opengl
+	@cmake --build --preset release --parallel $(JOBS) --target preintegration_tables papers_opengl \
+	  projection_tables
 	@mkdir -p out/papers
 	@$(BUILD)/bin/preintegration_tables --json out/papers/tables.json $(if $(QUICK),--quick) > out/papers/tables.md
 	@cat out/papers/tables.md
 	@$(BUILD)/bin/papers_opengl --json out/papers/opengl.json $(if $(DATA),--data $(DATA)) $(if $(QUICK),--quick) \
 	  > out/papers/opengl.md
 	@cat out/papers/opengl.md
+	@$(BUILD)/bin/projection_tables $(if $(DATA),--shared $(DATA)/..) --json out/papers/projection.json \
+	  $(if $(QUICK),--quick) > out/papers/projection.md
+	@cat out/papers/projection.md
 
 install:
 	@tools/install_dependencies.sh build

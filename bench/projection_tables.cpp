@@ -131,6 +131,7 @@ void measure_orders(Report& report) {
     with_mesh(report, name, [&](const PreparedMesh& mesh) {
       for (const CellSort sort : {CellSort::kCentroid, CellSort::kMpvo, CellSort::kXmpvo}) {
         RenderSettings settings = make_settings(Source::kProject, 1280, 960);
+        settings.integrator = Integrator::kPolynomial;  // of degree 2, as theirs
         settings.projection.sort = sort;
         report.add(name, mesh, name_of(sort), settings);
       }
@@ -159,7 +160,8 @@ void measure_integrators(Report& report) {
   report.begin("roettger_ertl_2002_figure_8",
                "Integrators of projected cells, sphere, 512 x 384 (Roettger and Ertl 2002, figure 8)");
   with_mesh(report, "builtin:sphere", [&](const PreparedMesh& mesh) {
-    for (const Integrator integrator : {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kPost}) {
+    for (const Integrator integrator : {Integrator::kTable3d, Integrator::kCylindrical, Integrator::kPolynomial,
+                                        Integrator::kAntiderivative, Integrator::kPartial, Integrator::kPost}) {
       RenderSettings settings = make_settings(Source::kProject, 512, 384);
       settings.integrator = integrator;
       report.add("sphere", mesh, name_of(integrator), settings);
