@@ -2,6 +2,8 @@
 
 /// What the programs of `make papers` share: tables as Markdown and JSON, transfer functions, errors of entries.
 
+#include "src/optics/antiderivative_table.h"
+#include "src/optics/polynomial_table.h"
 #include "src/optics/segment_domain.h"
 #include "src/optics/segment_integral.h"
 #include "src/support/timer.h"
@@ -108,6 +110,24 @@ inline double median_seconds(int rounds, const std::function<void()>& work) {
   }
   std::sort(seconds.begin(), seconds.end());
   return seconds[seconds.size() / 2];
+}
+
+/// Seconds of setting up 512 x 512 coefficients of a polynomial.
+struct SetUpSeconds {
+  double straightforward = 0.0, incremental = 0.0;
+};
+inline SetUpSeconds time_polynomial(int rounds, const OpticalFunction& function, PreintegrationSettings settings) {
+  optics::PolynomialTable table;
+  const auto build = [&](bool use_incremental) {
+    settings.use_incremental = use_incremental;
+    return median_seconds(rounds, [&] { optics::build_polynomial_table(source_of(function), settings, table); });
+  };
+  return {build(false), build(true)};
+}
+inline double time_antiderivatives(int rounds, const OpticalFunction& function) {
+  optics::AntiderivativeTable table;
+  return median_seconds(10 * rounds,
+                        [&] { optics::build_antiderivative_table(function, {}, kRange, kLongest, table); });
 }
 
 struct Errors {

@@ -166,19 +166,11 @@ void time_set_up(int rounds, Report& report) {
     PreintegrationSettings settings;
     settings.scalars = 512;
     settings.degree = degree;
-    PolynomialTable table;
-    const auto build = [&](bool use_incremental) {
-      settings.use_incremental = use_incremental;
-      return median_seconds(rounds, [&] { build_polynomial_table(source_of(function), settings, table); });
-    };
-    const double anew = build(false), incremental = build(true);
+    const auto [anew, incremental] = time_polynomial(rounds, function, settings);
     report.add({"polynomial, n = " + std::to_string(degree), anew, incremental,
                 device.time(rounds, function, Integrator::kPolynomial, settings), kNotAtHand, kNotAtHand});
   }
-  AntiderivativeTable table;
-  const double seconds =
-      median_seconds(10 * rounds, [&] { build_antiderivative_table(function, {}, kRange, kLongest, table); });
-  report.add({"antiderivatives (ours)", seconds, "-", "-", "-", "-"});
+  report.add({"antiderivatives (ours)", time_antiderivatives(rounds, function), "-", "-", "-", "-"});
 }
 
 struct Subject {

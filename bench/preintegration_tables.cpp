@@ -113,18 +113,10 @@ void time_polynomials(int rounds, Report& report) {
     PreintegrationSettings settings;
     settings.scalars = 512;
     settings.degree = degree;
-    PolynomialTable table;
-    const auto build = [&](bool use_incremental) {
-      settings.use_incremental = use_incremental;
-      return median_seconds(rounds, [&] { build_polynomial_table(source_of(function), settings, table); });
-    };
-    const double anew = build(false), incremental = build(true);
+    const auto [anew, incremental] = time_polynomial(rounds, function, settings);
     report.add({"polynomial, n = " + std::to_string(degree), anew, incremental});
   }
-  AntiderivativeTable table;
-  const double seconds =
-      median_seconds(10 * rounds, [&] { build_antiderivative_table(function, {}, kRange, kLongest, table); });
-  report.add({"antiderivatives", seconds, "-"});
+  report.add({"antiderivatives", time_antiderivatives(rounds, function), "-"});
 }
 
 /// How lengths should be spaced, by how deep the longest segment is.

@@ -33,14 +33,6 @@
 namespace tetravox::cpu {
 namespace {
 
-/// A segment's colours may err by this part of the picture's tolerance.
-constexpr float kSegmentsOfTolerance = 40.0f;
-
-/// Where errors of more than one 8-bit step are allowed, what comes through less than this part of the tolerance is
-/// left out.
-constexpr double kOneStep = 1.0 / 255.0;
-constexpr float kNegligibleOfTolerance = 0.1f;
-
 /// The parts of a tile's rays that the clipping keeps.
 class TileIntervals {
  public:
@@ -362,7 +354,7 @@ MarchJob GridRenderer::make_job(const RenderSettings& settings, const Integrator
   job.allowed_rate = scene::allowed_rate_of(settings.tolerance, diagonal());
   job.most_pieces = scene::most_pieces_of(settings.tolerance);
   job.use_early_ray_termination = settings.use_early_ray_termination;
-  if (settings.tolerance > kOneStep) job.negligible = kNegligibleOfTolerance * static_cast<float>(settings.tolerance);
+  job.negligible = scene::negligible_transmittance(settings);
   if (settings.samples_per_voxel > 0.0)
     job.sample_distance = static_cast<float>(grid::mean_spacing(frame_) / settings.samples_per_voxel);
   return job;
@@ -494,7 +486,7 @@ void GridRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   IntegratorTables tables{&antiderivative_,
                           &control_points_,
                           settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,
-                          static_cast<float>(settings.tolerance) / kSegmentsOfTolerance,
+                          scene::segment_tolerance(settings),
                           settings.samples,
                           field_.kernel != nullptr};
   FrameParts frame;

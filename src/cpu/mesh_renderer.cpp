@@ -29,9 +29,6 @@
 namespace tetravox::cpu {
 namespace {
 
-/// A ray of a mesh may err by the picture's tolerance where this many of its segments err all they may.
-constexpr float kSegmentsOfTolerance = 40.0f;
-
 /// 32-bit gathers reach this many 20-byte cells.
 constexpr std::size_t kMostCells = 0x7FFFFFFFu / 5;
 
@@ -324,7 +321,7 @@ void MeshRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
 
   IntegratorTables tables{&antiderivative_, &control_points_,
                           settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,
-                          static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, settings.samples};
+                          scene::segment_tolerance(settings), settings.samples};
   tables.effects = &illustration.effects;
   build_occupancy(domain_, settings.tolerance, diagonal(), occupancy_);
   const DomainFunction domain = make_domain_function(domain_, occupancy_, settings.tolerance, diagonal());

@@ -27,6 +27,7 @@ void add_projection(std::vector<ProgramRecipe>& programs) {
   for (const bool has_cell_data : {false, true})
     for (const bool use_outlines : {false, true})
       programs.push_back({"decomposition", {recipe_of_decomposition(has_cell_data, use_outlines)}});
+  programs.push_back({"lists, sorting", {recipe_of_segment_sorting()}});
   for (const IntegratorShader& integrator : all_integrator_shaders()) {
     const bool has_cell_data = integrator.name == "cell data";
     programs.push_back({"lists, " + integrator.name, {recipe_of_resolving(integrator, has_cell_data)}});

@@ -84,6 +84,12 @@ std::uint64_t FrameParts::bytes() const {
   return block_.bytes() + columns_.bytes() + rows_.bytes() + (picture_.get() ? picture_.bytes() : 0);
 }
 
+std::uint64_t count_drawn(const Image& image) {
+  std::uint64_t count = 0;
+  for (std::size_t i = 3; i < image.pixels.size(); i += 4) count += image.pixels[i] > 0.0f;
+  return count;
+}
+
 void dispatch_pixels(const RenderSettings& settings, int rows) {
   glDispatchCompute(static_cast<GLuint>(settings.width + 7) / 8, static_cast<GLuint>(rows + 7) / 8, 1);
 }

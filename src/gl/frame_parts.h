@@ -41,6 +41,9 @@ class FrameParts {
   Picture picture_;
 };
 
+/// Pixels that anything was drawn into: rays, for sources that do not count them.
+std::uint64_t count_drawn(const Image& image);
+
 /// Starts one invocation a pixel of so many rows, in groups of 8 x 8.
 void dispatch_pixels(const RenderSettings& settings, int rows);
 

@@ -24,19 +24,9 @@
 namespace tetravox::gl {
 namespace {
 
-/// As on the CPU: a segment's colours may err by this part of the picture's tolerance; and where errors of more than
-/// one 8-bit step are allowed, what comes through less than this part of it is left out.
-constexpr float kSegmentsOfTolerance = 40.0f, kNegligibleOfTolerance = 0.1f;
-constexpr double kOneStep = 1.0 / 255.0;
-
 /// Bricks that a ray is taken through in one pass: a fraction of a second on slow devices, which drivers with a
 /// watchdog allow.
 constexpr int kBricksAPass = 64;
-/// Iterations of loops in one pass, about: llvmpipe leaves loops without a word once a shader has gone through 65,535
-/// in all, and a brick can take half of them.
-constexpr int kIterations = 20000;
-/// Samples a segment that a brick's worst case leaves room for.
-constexpr int kMostSamples = 8;
 
 class GridRenderer final : public scene::FrameRenderer {
  public:
@@ -202,8 +192,7 @@ MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSetti
   block.plane_base_y = static_cast<int>(dimensions[0]);
   block.plane_base_z = static_cast<int>(dimensions[0] + dimensions[1]);
   block.bricks_a_pass = kBricksAPass;
-  const int loops = settings.integrator == Integrator::kPost ? 4 + 3 * settings.samples : 4;
-  block.most_work = std::max(kIterations / loops, 1);
+  block.most_work = pieces_a_pass(settings);
   block.texel_offset = device_->values.map().offset;
   block.texel_scale = device_->values.map().scale;
   block.allowed_rate = scene::allowed_rate_of(settings.tolerance, diagonal());
@@ -212,7 +201,7 @@ MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSetti
   block.bins_per_scalar = steepness_.bins_per_scalar;
   if (settings.samples_per_voxel > 0.0)
     block.sample_distance = static_cast<float>(grid::mean_spacing(frame_) / settings.samples_per_voxel);
-  if (settings.tolerance > kOneStep) block.negligible = kNegligibleOfTolerance * static_cast<float>(settings.tolerance);
+  block.negligible = scene::negligible_transmittance(settings);
   return block;
 }
 
@@ -225,8 +214,8 @@ void GridRenderer::slice(const Camera& camera, const RenderSettings& settings, c
   const grid::GridFrame frame = grid::make_grid_frame(grid_.data.shape);
   const scene::GridView view = scene::make_grid_view(grid_, frame, camera, settings.width, settings.height);
   device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);
-  device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, context_->limits(),
-                     context.progress, filters_slices(settings));
+  device.tables.bind(settings, scene::segment_tolerance(settings), context_->limits(), context.progress,
+                     filters_slices(settings));
   device.slices.draw(
       {grid_, frame, view, device.values, device.tables, device.frame, settings, *context_, context.progress},
       statistics);
@@ -273,10 +262,6 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
                 "the OpenGL backend does not know functions of several variables yet: draw with --backend cpu");
   if (settings.source == Source::kSlices) return slice(camera, settings, context, image, statistics);
   require_supported(settings);
-  if (settings.integrator == Integrator::kPost && settings.samples > kMostSamples && context_->device().is_software)
-    throw Error(ErrorCode::kUnsupported,
-                "OpenGL without graphics hardware takes at most 8 samples a segment on grids: "
-                "ask for fewer (--samples), or draw with --backend cpu");
   // The spline would have to pass through the densities of each function: no table of the values does that.
   if (settings.integrator == Integrator::kPre && settings.filter.kind == FilterKind::kInterpolatingBspline)
     throw Error(
@@ -286,8 +271,8 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
   Device& device = *device_;
   const support::Timer timer;
   plan(settings);
-  device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, context_->limits(),
-                     context.progress, field_.kernel != nullptr);
+  device.tables.bind(settings, scene::segment_tolerance(settings), context_->limits(), context.progress,
+                     field_.kernel != nullptr);
   statistics.plan_seconds = timer.seconds();
   const scene::GridView view = scene::make_grid_view(drawn(), frame_, camera, settings.width, settings.height);
   device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);

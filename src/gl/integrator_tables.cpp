@@ -4,6 +4,7 @@
 #include "src/optics/transparency_table.h"
 #include "tetravox/error.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace tetravox::gl {
@@ -37,6 +38,12 @@ IntegratorShader polynomial_shader(int degree, OpacityModel opacity) {
 }
 
 }  // namespace
+
+int pieces_a_pass(const RenderSettings& settings) {
+  constexpr int kIterations = 24000;  // the last piece or segment begun is finished
+  const int loops = settings.integrator == Integrator::kPost ? 4 + 3 * settings.samples : 4;
+  return std::max(kIterations / loops, 1);
+}
 
 void IntegratorShader::add_to(ShaderRecipe& recipe) const {
   recipe.includes.emplace_back("integrator.glsl", file);
@@ -164,17 +171,13 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance, con
   block.nodes_per_scalar = table.nodes_per_scalar;
   block.density_per_unit = table.density_per_unit;
   block.units_per_density = table.units_per_density;
-  block.largest_color_slope = table.largest_color_slope;
   block.split_threshold = 12.0f * tolerance;
   block.last_node = table.last_node;
-  block.has_coarse = table.has_coarse;
   is_beyond_ = !table.covers_data || may_overshoot;
-  block.covers_data = !is_beyond_;
   block.points_first = control_points_.first;
   block.buckets_per_scalar = control_points_.buckets_per_scalar;
   block.last_bucket = static_cast<int>(control_points_.first_interval.size()) - 1;
   block.samples = settings.samples;
-  block.interval_count = control_points_.interval_count;
   block.first_iso = first_iso_;
   block.isos_per_scalar = isos_per_scalar_;
   block_.upload(&block, sizeof(block));

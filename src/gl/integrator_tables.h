@@ -29,6 +29,11 @@ struct TableSources {
   bool is_constant = false;      ///< cell data: control points alone
 };
 
+/// Pieces of segments that one invocation of a shader may integrate, so that no pass takes long, which drivers with a
+/// watchdog ask for, and none exceeds what llvmpipe allows: it leaves loops, without a word, once an invocation has
+/// gone through 65,535 iterations in all.
+int pieces_a_pass(const RenderSettings& settings);
+
 /// What `#include "integrator.glsl"` stands for in the shaders of a source.
 struct IntegratorShader {
   std::string name;  ///< of its own for each variant

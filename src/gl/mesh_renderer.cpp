@@ -18,9 +18,6 @@
 namespace tetravox::gl {
 namespace {
 
-/// A segment's colours may err by this part of the picture's tolerance, as on the CPU.
-constexpr float kSegmentsOfTolerance = 40.0f;
-
 class MeshRenderer final : public scene::FrameRenderer {
  public:
   MeshRenderer(const PreparedMesh& mesh, std::shared_ptr<Context> context) : mesh_(mesh), context_(std::move(context)) {
@@ -59,8 +56,7 @@ class MeshRenderer final : public scene::FrameRenderer {
     device.frame.begin(context_->limits(), frame, mesh_.world_per_local, settings);
     device.mesh.bind();
     const support::Timer timer;
-    device.tables.bind(settings, static_cast<float>(settings.tolerance) / kSegmentsOfTolerance, context_->limits(),
-                       context.progress);
+    device.tables.bind(settings, scene::segment_tolerance(settings), context_->limits(), context.progress);
     statistics.plan_seconds = timer.seconds();
     const IntegratorShader integrator = device.tables.shader(settings);
     if (settings.source.value_or(Source::kWalk) == Source::kWalk)
@@ -78,6 +74,7 @@ class MeshRenderer final : public scene::FrameRenderer {
           {camera, frame, device.mesh.seen(), device.frame, settings, integrator, context_->limits(), context.progress},
           statistics);
     device.frame.download(image);
+    if (settings.source.value_or(Source::kWalk) != Source::kWalk) statistics.rays = count_drawn(image);
     context_->require_no_error("drawing");
     note_backend(*context_, statistics);
   }
@@ -125,21 +122,6 @@ namespace tetravox {
 
 Renderer make_gl_renderer(const PreparedMesh& mesh, const GlOptions& options) {
   return Renderer(gl::make_mesh_renderer(mesh, gl::Context::open(options)));
-}
-
-std::vector<SourceMethods> gl_methods() {
-  std::vector<SourceMethods> methods;
-  for (const Source source : {Source::kWalk, Source::kProject, Source::kVicp})
-    methods.push_back({"gl",
-                       source,
-                       {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d,
-                        Integrator::kPolynomial, Integrator::kPost, Integrator::kCylindrical}});
-  for (const Source source : {Source::kMarch, Source::kSlices})
-    methods.push_back({"gl",
-                       source,
-                       {Integrator::kAntiderivative, Integrator::kPartial, Integrator::kTable3d,
-                        Integrator::kPolynomial, Integrator::kPost, Integrator::kPre}});
-  return methods;
 }
 
 }  // namespace tetravox

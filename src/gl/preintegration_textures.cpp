@@ -1,41 +1,23 @@
 #include "src/gl/preintegration_textures.h"
 
 #include "src/gl/blocks.h"
-#include "tetravox/error.h"
 
 #include <algorithm>
-#include <string>
 
 namespace tetravox::gl {
 namespace {
 
 constexpr GLuint kTableUnit = 4, kRatioUnit = 5, kBlockBinding = 7;
 
-void require_size(int side, int limit) {
-  if (side > limit)
-    throw Error(ErrorCode::kUnsupported, "OpenGL: this device holds tables of at most " + std::to_string(limit) +
-                                             " entries a side, and this one has " + std::to_string(side) +
-                                             ": ask for fewer (--preintegration-size, --preintegration-planes)");
-}
-
-PreintegrationBlock describe(const optics::SegmentDomain& domain) {
-  PreintegrationBlock block{};
-  block.first_scalar = domain.first;
-  block.places_per_scalar = domain.per_scalar;
-  block.longest = domain.longest;
-  block.largest_extinction = domain.largest_extinction;
-  return block;
-}
-
 }  // namespace
 
 void PreintegrationTextures::upload(const optics::PreintegrationTable& table, const Limits& limits) {
-  require_size(std::max(table.scalars, table.lengths), limits.volume_size);
+  require_table_size(std::max(table.scalars, table.lengths), limits.volume_size);
   table_.table = make_table_texture(GL_TEXTURE_3D);
   glTextureStorage3D(table_.table.get(), 1, GL_RGBA32F, table.scalars, table.scalars, table.lengths);
   glTextureSubImage3D(table_.table.get(), 0, 0, 0, 0, table.scalars, table.scalars, table.lengths, GL_RGBA, GL_FLOAT,
                       table.entries.data());
-  PreintegrationBlock& block = table_.block = describe(table.domain);
+  PreintegrationBlock& block = table_.block = describe_domain(table.domain);
   block.scalars = table.scalars;
   block.lengths = table.lengths;
   block.is_logarithmic = table.spacing == LengthSpacing::kLogarithmic;
@@ -43,7 +25,7 @@ void PreintegrationTextures::upload(const optics::PreintegrationTable& table, co
 }
 
 void PreintegrationTextures::upload(const optics::PolynomialTable& table, const Limits& limits) {
-  require_size(table.scalars, limits.texture_size);
+  require_table_size(table.scalars, limits.texture_size);
   table_.table = make_table_texture(GL_TEXTURE_2D_ARRAY);
   glTextureStorage3D(table_.table.get(), 1, GL_RGBA32F, table.scalars, table.scalars, table.degree + 1);
   glTextureSubImage3D(table_.table.get(), 0, 0, 0, 0, table.scalars, table.scalars, table.degree + 1, GL_RGBA, GL_FLOAT,
@@ -52,18 +34,18 @@ void PreintegrationTextures::upload(const optics::PolynomialTable& table, const 
   const auto count = static_cast<GLsizei>(table.absorbed_ratios.size());
   glTextureStorage2D(table_.ratios.get(), 1, GL_R32F, count, 1);
   glTextureSubImage2D(table_.ratios.get(), 0, 0, 0, count, 1, GL_RED, GL_FLOAT, table.absorbed_ratios.data());
-  PreintegrationBlock& block = table_.block = describe(table.domain);
+  PreintegrationBlock& block = table_.block = describe_domain(table.domain);
   block.scalars = table.scalars;
   table_.bytes = table.bytes();
 }
 
 void PreintegrationTextures::upload(const optics::CylindricalAtlas& atlas, const Limits& limits) {
   const int width = atlas.columns * atlas.tile, height = atlas.rows * atlas.tile;
-  require_size(std::max(width, height), limits.texture_size);
+  require_table_size(std::max(width, height), limits.texture_size);
   table_.table = make_table_texture(GL_TEXTURE_2D);
   glTextureStorage2D(table_.table.get(), 1, GL_RGBA32F, width, height);
   glTextureSubImage2D(table_.table.get(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, atlas.texels.data());
-  PreintegrationBlock& block = table_.block = describe(atlas.domain);
+  PreintegrationBlock& block = table_.block = describe_domain(atlas.domain);
   block.planes = atlas.planes;
   block.tile = atlas.tile;
   block.columns = atlas.columns;

@@ -31,16 +31,6 @@ vec4 row_of(const Vector3& v) {
 /// What rasterizers have since Direct3D 11 asks it of them; some report less than they do (GL_SUBPIXEL_BITS).
 constexpr int kSubpixels = 256;
 
-/// Pixels that anything was drawn into.
-std::uint64_t count_rays(const FrameParts& parts, const RenderSettings& settings) {
-  Image image{settings.width, settings.height, {}, {}};
-  image.pixels.resize(4 * static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height));
-  parts.download(image);
-  std::uint64_t count = 0;
-  for (std::size_t i = 3; i < image.pixels.size(); i += 4) count += image.pixels[i] > 0.0f;
-  return count;
-}
-
 }  // namespace
 
 /// All cells, from the back to the front; for lists as they are.
@@ -160,16 +150,12 @@ void Projector::draw(const ProjectionFrame& frame, RenderStatistics& statistics)
   if (fills_lists) {
     glNamedFramebufferParameteri(target_.get(), GL_FRAMEBUFFER_DEFAULT_WIDTH, settings.width);
     glNamedFramebufferParameteri(target_.get(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, settings.height);
-    statistics.segments = lists_.resolve(frame.parts, settings, shader.integrator, shader.has_cell_data, frame.limits,
-                                         frame.progress, [&](std::uint32_t room) {
-                                           block_.node_count = room;
-                                           passes_.set(block_);
-                                           draw_ranges(shader);
-                                         });
+    statistics.segments =
+        lists_.resolve({frame.parts, passes_, block_, settings, shader.integrator, shader.has_cell_data, frame.limits,
+                        frame.progress, [&] { draw_ranges(shader); }});
   } else {
     statistics.segments = blend(frame, shader);
   }
-  statistics.rays = count_rays(frame.parts, settings);
   statistics.projection.draw_seconds = timer.seconds();
 }
 

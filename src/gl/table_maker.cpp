@@ -45,14 +45,23 @@ std::vector<std::array<float, 4>> sample_function(const optics::PreintegrationSo
   return nodes;
 }
 
-void require_size(int side, int limit) {
+}  // namespace
+
+void require_table_size(int side, int limit) {
   if (side > limit)
     throw Error(ErrorCode::kUnsupported, "OpenGL: this device holds tables of at most " + std::to_string(limit) +
                                              " entries a side, and this one has " + std::to_string(side) +
                                              ": ask for fewer (--preintegration-size, --preintegration-planes)");
 }
 
-}  // namespace
+PreintegrationBlock describe_domain(const optics::SegmentDomain& domain) {
+  PreintegrationBlock block{};
+  block.first_scalar = domain.first;
+  block.places_per_scalar = domain.per_scalar;
+  block.longest = domain.longest;
+  block.largest_extinction = domain.largest_extinction;
+  return block;
+}
 
 TextureName make_table_texture(GLenum target) {
   GLuint name = 0;
@@ -238,25 +247,21 @@ DeviceTable TableMaker::make(const optics::PreintegrationSource& source, const R
   std::array<GLint, 4> viewport{};
   glGetIntegerv(GL_VIEWPORT, viewport.data());
   DeviceTable table;
-  const optics::SegmentDomain domain = optics::make_segment_domain(source);
-  table.block.first_scalar = domain.first;
-  table.block.places_per_scalar = domain.per_scalar;
-  table.block.longest = domain.longest;
-  table.block.largest_extinction = domain.largest_extinction;
+  table.block = describe_domain(optics::make_segment_domain(source));
   variant_ = settings.integrator == Integrator::kCylindrical ? " atlas" : "";
   if (settings.integrator == Integrator::kTable3d) {
-    require_size(std::max(asked.scalars, asked.lengths), limits.volume_size);
+    require_table_size(std::max(asked.scalars, asked.lengths), limits.volume_size);
     begin(source, asked, asked.scalars, asked.scalars);
     table.table = make_table_texture(GL_TEXTURE_3D);
     make_slices(source, asked, table);
   } else if (settings.integrator == Integrator::kPolynomial) {
-    require_size(asked.scalars, limits.texture_size);
+    require_table_size(asked.scalars, limits.texture_size);
     begin(source, asked, asked.scalars, asked.scalars);
     table.table = make_table_texture(GL_TEXTURE_2D_ARRAY);
     make_maps(source, asked, table);
   } else {
     const int columns = optics::count_atlas_columns(asked.planes), rows = (asked.planes + columns - 1) / columns;
-    require_size(std::max(columns, rows) * asked.tile, limits.texture_size);
+    require_table_size(std::max(columns, rows) * asked.tile, limits.texture_size);
     begin(source, asked, columns * asked.tile, rows * asked.tile);
     maker_.plane_count = asked.planes;
     maker_.tile_size = asked.tile;

@@ -30,6 +30,12 @@ struct DeviceTable {
   std::uint64_t bytes = 0;
 };
 
+/// @throws Error (kUnsupported) where a side has more entries than the device allows.
+void require_table_size(int side, int limit);
+
+/// What look-ups need of a domain.
+PreintegrationBlock describe_domain(const optics::SegmentDomain& domain);
+
 /// An empty texture for a table, interpolated. With the context current.
 TextureName make_table_texture(GLenum target);
 

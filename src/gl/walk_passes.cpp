@@ -17,16 +17,6 @@ constexpr GLuint kCounterBinding = 0, kEntryBinding = 1, kHeadBinding = 2, kPaus
 constexpr GLuint kFrontFaceUnit = 10;
 constexpr GLuint kPictureUnit = 0;  // image
 
-/// Iterations of loops that a ray may take in one pass: a fraction of a second on slow devices, which drivers with a
-/// watchdog allow; and llvmpipe leaves loops without a word once a shader has gone through 65,535 iterations in all.
-constexpr int kIterations = 24000;
-
-/// Pieces of segments that a ray may be taken through in one pass.
-int steps_of(const RenderSettings& settings) {
-  const int loops = settings.integrator == Integrator::kPost ? 4 + 3 * settings.samples : 4;
-  return std::max(kIterations / loops, 1);
-}
-
 struct Counters {
   std::uint32_t entry_count = 0, unfinished_count = 0, entered_count = 0, stopped_count = 0;
   std::array<std::uint32_t, 64> segments{};
@@ -136,8 +126,26 @@ void WalkPasses::collect_entries(const WalkFrame& frame, WalkBlock& block) {
                       " times, more than this device keeps: use --entry-order peeling, or draw with --backend cpu");
     entries_.reserve(wanted);
   }
-  glUseProgram(find_program(programs_, "sort", [] { return std::vector{recipe_of_sorting()}; }).get());
-  dispatch_pixels(frame.settings, frame.row_end - frame.row_begin);
+  sort_entries(frame, block);
+}
+
+void WalkPasses::sort_entries(const WalkFrame& frame, WalkBlock block) {
+  const ProgramName& program = find_program(programs_, "sort", [] { return std::vector{recipe_of_sorting()}; });
+  for (block.sorted_run = 0;; block.sorted_run = std::max(2 * block.sorted_run, 1u)) {
+    upload(block);
+    counters_.clear_to_zero(sizeof(Counters));
+    glUseProgram(program.get());
+    dispatch_pixels(frame.settings, frame.row_end - frame.row_begin);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    Counters counters;
+    counters_.download(&counters, sizeof(counters));
+    if (counters.stopped_count > 0)
+      throw Error(ErrorCode::kUnsupported,
+                  "OpenGL: rays enter the mesh more often than can be sorted in a pixel: use --entry-order peeling, or "
+                  "draw with --backend cpu");
+    if (counters.unfinished_count == 0) return;
+    support::throw_if_cancelled(frame.progress);
+  }
 }
 
 /// Finds the next face that each ray enters through.
@@ -176,7 +184,7 @@ std::uint64_t WalkPasses::walk(const WalkFrame& frame, WalkBlock& block, RenderS
   const ProgramName& program =
       find_program(programs_, key, [&] { return std::vector{recipe_of_walk(frame.integrator, frame.variant)}; });
   std::uint64_t entered = 0;
-  block.steps = steps_of(frame.settings);
+  block.steps = pieces_a_pass(frame.settings);
   block.is_first_pass = 1;
   for (Counters counters;;) {
     upload(block);

@@ -54,6 +54,7 @@ class WalkPasses {
   void draw_rows(const WalkFrame& frame, RenderStatistics& statistics);
   void prepare(const WalkFrame& frame);
   void collect_entries(const WalkFrame& frame, WalkBlock& block);
+  void sort_entries(const WalkFrame& frame, WalkBlock block);
   void peel_layer(const WalkFrame& frame, const WalkBlock& block);
   std::uint64_t walk(const WalkFrame& frame, WalkBlock& block, RenderStatistics& statistics);
   void upload(const WalkBlock& block);

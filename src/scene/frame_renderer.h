@@ -51,6 +51,21 @@ class FrameRenderer {
   virtual double diagonal() const = 0;
 };
 
+/// Error in colour that a segment may have: a ray may err by the picture's tolerance where this many of its segments
+/// err all they may.
+inline float segment_tolerance(const RenderSettings& settings) {
+  constexpr float kSegmentsOfTolerance = 40.0f;
+  return static_cast<float>(settings.tolerance) / kSegmentsOfTolerance;
+}
+
+/// Transmittance below which rays of grids end: where errors of more than one 8-bit step are allowed, a tenth of the
+/// tolerance is left out.
+inline float negligible_transmittance(const RenderSettings& settings) {
+  constexpr double kOneStep = 1.0 / 255.0;
+  constexpr float kNegligibleOfTolerance = 0.1f;
+  return settings.tolerance > kOneStep ? kNegligibleOfTolerance * static_cast<float>(settings.tolerance) : 0.0f;
+}
+
 /// Length of the diagonal of bounds.
 double diagonal_of(const std::array<ValueRange, 3>& bounds);
 

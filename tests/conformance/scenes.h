@@ -64,4 +64,18 @@ inline MeshData make_cell_data_mesh() {
   return builder.build(Association::kCell);
 }
 
+/// Thin plates one behind the other, and a camera that looks through all of them.
+inline MeshData make_comb(int plates) {
+  tests::MeshBuilder builder;
+  for (int i = 0; i < plates; ++i) {
+    tests::BoxOptions options;
+    options.bricks = {1, 1, 1};
+    options.lower = {-1, -1 + 2.0 * i / plates, -1};
+    options.upper = {1, -1 + 2.0 * (i + 0.5) / plates, 1};
+    tests::add_box(builder, options, [](const Vector3& p) { return p[0] + 2 * p[1]; });
+  }
+  return builder.build(Association::kPoint);
+}
+inline const Camera kAlongComb{{0.3, -9, 0.2}, {0, 0, 0}, {0, 0, 1}, 30.0, {}};
+
 }  // namespace tetravox::conformance

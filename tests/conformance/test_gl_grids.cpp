@@ -309,5 +309,22 @@ TEST(GlGridSettings, ARendererKeepsNothingOfOtherSettings) {
   }
 }
 
+/// As many as asked for, in as many passes as that needs: passes end wherever a ray is.
+TEST(GlGrid, SegmentsMayHaveManySamples) {
+  TETRAVOX_REQUIRE_GL();
+  for (const NamedGrid& named : make_hard_grids()) {
+    const GridSubject scene(named.grid);
+    Pair pair(scene.grid);
+    pair.set_transfer_function(scene.function("smooth"));
+    for (const int samples : {50, 1000}) {
+      RenderSettings settings = tests::make_settings(Integrator::kPost, 20, 15);
+      settings.samples = samples;
+      EXPECT_TRUE(tests::images_agree(pair.gl.render(scene.cameras[0].camera, settings),
+                                      pair.cpu.render(scene.cameras[0].camera, settings), 3e-3, 3e-4))
+          << named.name << " " << samples;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tetravox::conformance

@@ -133,30 +133,36 @@ TEST(GlMesh, FramesDoNotDependOnThoseBefore) {
   EXPECT_TRUE(tests::images_equal(gl.render(scene.camera("outside"), small), first));
 }
 
-/// Rays of this comb of thin plates enter it far more often than lists have room for at first.
+/// Rays of a comb of thin plates enter it far more often than lists have room for at first, or are sorted at once.
 TEST(GlMesh, RaysMayEnterAnyNumberOfTimes) {
   TETRAVOX_REQUIRE_GL();
-  tests::MeshBuilder builder;
-  for (int i = 0; i < 60; ++i) {
-    tests::BoxOptions options;
-    options.bricks = {1, 1, 1};
-    options.lower = {-1, -1 + i / 30.0, -1};
-    options.upper = {1, -1 + (i + 0.5) / 30.0, 1};
-    tests::add_box(builder, options, [](const Vector3& p) { return p[0] + 2 * p[1]; });
+  for (const int plates : {60, 1300}) {
+    const Subject scene = make_subject(make_comb(plates));
+    Renderer gl = make_gl_renderer(scene.mesh), cpu(scene.mesh);
+    gl.set_transfer_function(scene.function("smooth"));
+    cpu.set_transfer_function(scene.function("smooth"));
+    for (const EntryOrder order : {EntryOrder::kLists, EntryOrder::kPeeling}) {
+      RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 16, 12);
+      settings.entry_order = order;
+      RenderStatistics drawn, expected;
+      const Image same = cpu.render(kAlongComb, settings, &expected);
+      EXPECT_TRUE(tests::images_agree(gl.render(kAlongComb, settings, &drawn), same, 1e-4)) << plates << name_of(order);
+      EXPECT_EQ(drawn.segments, expected.segments) << plates << name_of(order);
+    }
   }
-  const Subject scene = make_subject(builder.build(Association::kPoint));
+}
+
+/// Segments of post-classification take as many samples as asked for, in as many passes as that needs.
+TEST(GlMesh, SegmentsMayHaveManySamples) {
+  TETRAVOX_REQUIRE_GL();
+  const Subject scene = make_subject("buckyball?cells=20000");
   Renderer gl = make_gl_renderer(scene.mesh), cpu(scene.mesh);
-  gl.set_transfer_function(scene.function("smooth"));
-  cpu.set_transfer_function(scene.function("smooth"));
-  for (const EntryOrder order : {EntryOrder::kLists, EntryOrder::kPeeling}) {
-    RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 64, 48);
-    settings.entry_order = order;
-    Camera camera = scene.camera("outside");
-    camera.position = {0.3, -9, 0.2};
-    camera.focal_point = {0, 0, 0};
-    camera.view_up = {0, 0, 1};
-    EXPECT_TRUE(tests::images_agree(gl.render(camera, settings), cpu.render(camera, settings), 1e-4)) << name_of(order);
-  }
+  gl.set_transfer_function(scene.function("random"));
+  cpu.set_transfer_function(scene.function("random"));
+  RenderSettings settings = tests::make_settings(Integrator::kPost, 24, 18);
+  settings.samples = 1000;
+  EXPECT_TRUE(tests::images_agree(gl.render(scene.camera("outside"), settings),
+                                  cpu.render(scene.camera("outside"), settings), kMostApart, kMostApartRms));
 }
 
 TEST(GlMesh, WhatItCannotDrawItRefusesByName) {

@@ -1,18 +1,15 @@
 /// Projected cells against exact pictures: sources x orders x integrators x data.
 
+#include "tests/common/gl.h"
 #include "tests/common/image_compare.h"
 #include "tests/conformance/scenes.h"
 #include "tests/reference/integrator.h"
 #include "tetravox/error.h"
-#include "tetravox/gl.h"
 
 #include <cstdio>
 
 namespace tetravox::conformance {
 namespace {
-
-#define TETRAVOX_SKIP_WITHOUT_DEVICE() \
-  if (gl_devices().empty()) GTEST_SKIP() << "no device offers OpenGL 4.5 by EGL"
 
 /// Half an 8-bit step, as on the CPU.
 ::testing::AssertionResult is_exact(const Image& image, const Image& expected) {
@@ -36,7 +33,7 @@ RenderSettings make_settings(Source source, CellSort sort, Integrator integrator
 class GlProjection : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(GlProjection, PicturesAreExact) {
-  TETRAVOX_SKIP_WITHOUT_DEVICE();
+  TETRAVOX_REQUIRE_GL();
   const Subject scene = make_any_subject(GetParam());
   const reference::Tetrahedra tetrahedra = reference::make_tetrahedra(scene.dataset.mesh);
   Renderer renderer = make_gl_renderer(scene.mesh);
@@ -60,7 +57,7 @@ TEST_P(GlProjection, PicturesAreExact) {
 }
 
 TEST_P(GlProjection, TheDeviceCutsCellsAsTheCpuDoes) {
-  TETRAVOX_SKIP_WITHOUT_DEVICE();
+  TETRAVOX_REQUIRE_GL();
   const Subject scene = make_any_subject(GetParam());
   Renderer renderer = make_gl_renderer(scene.mesh);
   renderer.set_transfer_function(scene.function("smooth"));
@@ -80,7 +77,7 @@ TEST_P(GlProjection, TheDeviceCutsCellsAsTheCpuDoes) {
 }
 
 TEST_P(GlProjection, KeptAndSentMeshesGiveTheSamePicture) {
-  TETRAVOX_SKIP_WITHOUT_DEVICE();
+  TETRAVOX_REQUIRE_GL();
   const Subject scene = make_any_subject(GetParam());
   Renderer renderer = make_gl_renderer(scene.mesh);
   renderer.set_transfer_function(scene.function("smooth"));
@@ -95,7 +92,7 @@ TEST_P(GlProjection, KeptAndSentMeshesGiveTheSamePicture) {
 /// What triangles carry is exact but for the rasterizer's steps: a 512th of a pixel, which counts at the edge of
 /// something thick.
 TEST_P(GlProjection, TrianglesCarryTheirSegments) {
-  TETRAVOX_SKIP_WITHOUT_DEVICE();
+  TETRAVOX_REQUIRE_GL();
   const Subject scene = make_any_subject(GetParam());
   Renderer renderer = make_gl_renderer(scene.mesh);
   renderer.set_transfer_function(scene.function("smooth"));
@@ -112,7 +109,7 @@ TEST_P(GlProjection, TrianglesCarryTheirSegments) {
 /// With one extinction and colour everywhere, no order and no interpolation of scalars plays a part: only whether each
 /// pixel is covered once by the length of its ray.
 TEST_P(GlProjection, EveryPixelIsCoveredOnce) {
-  TETRAVOX_SKIP_WITHOUT_DEVICE();
+  TETRAVOX_REQUIRE_GL();
   const Subject scene = make_any_subject(GetParam());
   const double length = tests::diagonal_of(scene.mesh.bounds);
   const OpticalFunction constant{{{0.0, 2.0 / length, {1.0, 0.5, 0.25}}}};
@@ -156,7 +153,7 @@ MeshData make_cyclic_bars() {
 }
 
 TEST(GlProjectionOrder, ListsAreRightWhereCellsHideOneAnotherInACircle) {
-  TETRAVOX_SKIP_WITHOUT_DEVICE();
+  TETRAVOX_REQUIRE_GL();
   const Subject scene = make_subject(make_cyclic_bars());
   const OpticalFunction function{
       {{0.2, 8.0, {1, 0, 0}}, {0.35, 8.0, {0, 1, 0}}, {0.5, 8.0, {0, 1, 0}}, {0.8, 8.0, {0, 0, 1}}}};
@@ -179,7 +176,7 @@ TEST(GlProjectionOrder, ListsAreRightWhereCellsHideOneAnotherInACircle) {
 }
 
 TEST(GlProjectionOrder, ConvexMeshesNeedNoMoreThanMpvo) {
-  TETRAVOX_SKIP_WITHOUT_DEVICE();
+  TETRAVOX_REQUIRE_GL();
   const Subject scene = make_subject("sphere");
   Renderer renderer = make_gl_renderer(scene.mesh);
   renderer.set_transfer_function(scene.function("thick"));
@@ -193,7 +190,7 @@ TEST(GlProjectionOrder, ConvexMeshesNeedNoMoreThanMpvo) {
 }
 
 TEST(GlProjectionOrder, LongListsAreDrawnInBands) {
-  TETRAVOX_SKIP_WITHOUT_DEVICE();
+  TETRAVOX_REQUIRE_GL();
   const Subject scene = make_subject("buckyball?cells=100000");
   Renderer renderer = make_gl_renderer(scene.mesh);
   renderer.set_transfer_function(scene.function("smooth"));
@@ -208,7 +205,7 @@ TEST(GlProjectionOrder, LongListsAreDrawnInBands) {
 }
 
 TEST(GlProjectionOrder, DegenerateAndOverlappingCellsDoNoHarm) {
-  TETRAVOX_SKIP_WITHOUT_DEVICE();
+  TETRAVOX_REQUIRE_GL();
   const Subject scene = make_subject(tests::make_soup(300, 5));
   Renderer renderer = make_gl_renderer(scene.mesh);
   renderer.set_transfer_function(scene.function("random"));
@@ -233,6 +230,23 @@ TEST(GlProjectionOrder, TheCpuRefusesByName) {
       EXPECT_NE(std::string(error.what()).find(name_of(source)), std::string::npos);
     }
   }
+}
+
+/// Pixels of a comb of many plates have longer lists than are sorted at once.
+TEST(GlProjection, ListsMayBeLong) {
+  TETRAVOX_REQUIRE_GL();
+  const Subject scene = make_subject(make_comb(700));
+  Renderer gl = make_gl_renderer(scene.mesh), cpu(scene.mesh);
+  gl.set_transfer_function(scene.function("smooth"));
+  cpu.set_transfer_function(scene.function("smooth"));
+  RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 16, 12);
+  settings.use_early_ray_termination = false;
+  RenderStatistics drawn, expected;
+  const Image same = cpu.render(kAlongComb, settings, &expected);
+  settings.source = Source::kProject;
+  settings.projection.sort = CellSort::kExact;
+  EXPECT_TRUE(tests::images_agree(gl.render(kAlongComb, settings, &drawn), same, 2e-4));
+  EXPECT_GT(drawn.segments, 1000 * drawn.rays) << "the lists are long";
 }
 
 }  // namespace

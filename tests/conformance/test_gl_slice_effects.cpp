@@ -3,27 +3,12 @@
 #include "tests/common/gl.h"
 #include "tests/common/image_compare.h"
 #include "tests/conformance/grid_scenes.h"
+#include "tests/conformance/slices.h"
 
 #include <cmath>
 
 namespace tetravox::conformance {
 namespace {
-
-RenderSettings slices_of(SlicingKind kind, int slices) {
-  RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 48, 36);
-  settings.source = Source::kSlices;
-  settings.slicing.kind = kind;
-  settings.slicing.slices = slices;
-  settings.tolerance = 1e-4;
-  return settings;
-}
-
-RenderSettings cpu_settings(RenderSettings settings) {
-  settings.source.reset();
-  settings.slicing = {};
-  if (settings.lighting.shadows == ShadowKind::kHalfAngle) settings.lighting.shadows = ShadowKind::kExact;
-  return settings;
-}
 
 GridData smooth_grid(ScalarType type = ScalarType::kFloat32) {
   tests::GridOptions options;

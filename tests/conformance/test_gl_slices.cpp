@@ -3,6 +3,7 @@
 #include "tests/common/gl.h"
 #include "tests/common/image_compare.h"
 #include "tests/conformance/grid_scenes.h"
+#include "tests/conformance/slices.h"
 #include "tetravox/error.h"
 #include "tetravox/slicing.h"
 
@@ -14,22 +15,6 @@ namespace {
 
 constexpr SlicingKind kKinds[] = {SlicingKind::kObject2d, SlicingKind::kObject2dInterpolated, SlicingKind::kStripes2d,
                                   SlicingKind::kView3d, SlicingKind::kShells};
-
-RenderSettings slices_of(SlicingKind kind, int slices, Integrator integrator = Integrator::kAntiderivative) {
-  RenderSettings settings = tests::make_settings(integrator, 48, 36);
-  settings.source = Source::kSlices;
-  settings.slicing.kind = kind;
-  settings.slicing.slices = slices;
-  settings.tolerance = 1e-4;
-  return settings;
-}
-
-/// The same by the CPU.
-RenderSettings cpu_settings(RenderSettings settings) {
-  settings.source.reset();
-  settings.slicing = {};
-  return settings;
-}
 
 GridData grid_named(const std::string& name) {
   for (const NamedGrid& grid : make_hard_grids())

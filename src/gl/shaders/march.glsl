@@ -12,8 +12,10 @@ layout(binding = 6) uniform usamplerBuffer bricks;      // [bricks] plan, bits o
 layout(binding = 7) uniform samplerBuffer planes;       // uneven axes: grid coordinates of all lattice planes
 layout(binding = 8) uniform samplerBuffer steepnesses;  // [levels][bins], see src/optics/steepness_table.h
 
-// Pieces that the pass has integrated: loops of a pass are limited (src/gl/march_passes.cpp).
+// Pieces that the pass has integrated; a pass ends, wherever a ray is, once they are enough (`pieces_a_pass`). A ray gets
+// on in every pass.
 uint work_done = 0u;
+bool ends_pass(float reached, float begun) { return work_done >= uint(march.most_work) && reached > begun; }
 
 const float kParallel = 1e-6;  // a ray that moves less along an axis is parallel to its planes
 const float kNever = 1e30;

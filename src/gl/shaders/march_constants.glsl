@@ -4,11 +4,12 @@
 #include "integrator.glsl"
 #include "nodes.glsl"
 
-void march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
+// How far it came.
+float march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
   Lattice l = lattice_of(ray, brick, plan);
   CellWalk walk = enter_lattice(ray, l, z, leave);
   Front front = front_at(0.0);
-  while (walk.front < leave) {
+  while (walk.front < leave && !ends_pass(walk.front, z)) {
 #ifdef IS_NEAREST
     float value = fetch_value(l.first + (walk.cell + 1) / 2);  // half a cell has the value of the point that it touches
 #else
@@ -20,4 +21,5 @@ void march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, ino
     ++segments;
     ++work_done;
   }
+  return walk.front;
 }

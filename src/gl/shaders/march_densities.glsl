@@ -2,11 +2,12 @@
 
 #include "densities.glsl"
 
-void march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
+// How far it came.
+float march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
   const float kThin = 0.05, kMostPieces = 64.0;  // optical depth of a piece, and how many there are at most
   Lattice l = lattice_of(ray, brick, plan);
   CellWalk walk = enter_lattice(ray, l, z, leave);
-  while (walk.front < leave) {
+  while (walk.front < leave && !ends_pass(walk.front, z)) {
     DensityCorners c = fetch_densities(l, walk.cell);
     float back = back_of(walk), depth = back - walk.front;
     float largest = 0.0;
@@ -25,4 +26,5 @@ void march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, ino
     ++segments;
     work_done += 9u + uint(pieces);
   }
+  return walk.front;
 }

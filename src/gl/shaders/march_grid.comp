@@ -62,8 +62,11 @@ void main() {
 #endif
     if (is_done || is_waiting) break;
     has_met = true;
-    march_brick(ray, walk.brick, plan, walk.z, leave, sum, segment_count);
-    leave_brick(ray, walk);
+    float reached = march_brick(ray, walk.brick, plan, walk.z, leave, sum, segment_count);
+    if (reached < leave)
+      walk.z = reached;  // the pass has ended: the brick is entered again, from there
+    else
+      leave_brick(ray, walk);
     is_done = has_left(walk) || is_over(sum);
   }
   if (segment_count > 0u) atomicAdd(counters.segments[place % 64u], segment_count);

@@ -57,31 +57,34 @@ float count_pieces(vec4 cubic, float steepness, float transmittance, float scala
   return clamp(ceil(sqrt(transmittance * bend * most / march.allowed_rate)), 1.0, march.most_pieces);
 }
 
-// Equal steps, each a segment.
-void march_strides(GridRay ray, Lattice l, float stride, float z, float leave, inout vec4 sum, inout uint segments) {
+// Equal steps, each a segment; how far they came.
+float march_strides(GridRay ray, Lattice l, float stride, float z, float leave, inout vec4 sum, inout uint segments) {
   float depth = leave - z;
   float wanted = march.sample_distance > 0.0 ? depth * ray.world_per_z / march.sample_distance
                                              : depth * length(l.direction) / stride;
   float steps = clamp(ceil(wanted), 1.0, 1e5), share = depth / steps;
   float scalar_front = sample_lattice(l, z);
   Front front = front_at(scalar_front);
-  for (float number = 1.0; number <= steps; number += 1.0) {
+  float number = 0.0;
+  while (number < steps && !ends_pass(z + number * share, z)) {
+    number += 1.0;
     float scalar_back = sample_lattice(l, z + number * share);
     integrate(Segment(scalar_front, scalar_back, share * ray.world_per_z), front, sum);
     scalar_front = scalar_back;
+    ++work_done;
   }
-  segments += uint(steps);
-  work_done += uint(steps);
+  segments += uint(number);
+  return number < steps ? z + number * share : leave;
 }
 
-// From cell to cell.
-void march_cells(GridRay ray, Lattice l, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
+// From cell to cell; how far it came.
+float march_cells(GridRay ray, Lattice l, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
   float steepness = (plan.x & kIsCurved) != 0u ? uintBitsToFloat(plan.y) : 0.0;
   CellWalk walk = enter_lattice(ray, l, z, leave);
   Front front;
   bool is_fresh = true;
   float scalar_front = 0.0;
-  while (walk.front < leave) {
+  while (walk.front < leave && !ends_pass(walk.front, z)) {
     vec4 low, high;
     fetch_corners(l, walk.cell, low, high);
     float back = back_of(walk), world = (back - walk.front) * ray.world_per_z;
@@ -99,21 +102,24 @@ void march_cells(GridRay ray, Lattice l, uvec4 plan, float z, float leave, inout
       pieces = count_pieces(cubic, steepness, sum.a, cell_back);
     }
     for (float number = 1.0; number <= pieces; number += 1.0) {
+      float reached = walk.front + (back - walk.front) * (number - 1.0) / pieces;
+      if (ends_pass(reached, z)) return reached;
       float scalar_back = number >= pieces ? cell_back : eval_cubic(cubic, number / pieces);
       integrate(Segment(scalar_front, scalar_back, world / pieces), front, sum);
       scalar_front = scalar_back;
+      ++work_done;
     }
     leave_cell(ray, l, back, walk);
     ++segments;
-    work_done += 1u + uint(pieces);
+    ++work_done;
   }
+  return walk.front;
 }
 
-void march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
+// How far it came.
+float march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
   Lattice l = lattice_of(ray, brick, plan);
   uint stride = plan.x >> 8 & 0xFFu;
-  if (stride > 0u)
-    march_strides(ray, l, float(stride), z, leave, sum, segments);
-  else
-    march_cells(ray, l, plan, z, leave, sum, segments);
+  if (stride > 0u) return march_strides(ray, l, float(stride), z, leave, sum, segments);
+  return march_cells(ray, l, plan, z, leave, sum, segments);
 }

@@ -6,3 +6,7 @@ int is_ordered;       // whether cells are looked up in the order, or stored in 
 int first_place;      // of the order, for a draw
 uint node_count;      // of lists: segments that there is room for
 uint first_thick;     // vertices of the mesh come before
+uint sorted_run;      // of lists: items in a row that are in order; 0: the first pass
+int is_first_pass;    // of compositing them
+int segments_a_pass;
+int unused_0;

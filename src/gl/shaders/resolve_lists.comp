@@ -1,74 +1,35 @@
-// Sorts the list of segments of each pixel by depth and composites it front to back.
+// Composites the sorted segments of each pixel front to back, some of them a pass.
 
 #include "projection.glsl"
-#include "projected_segment.glsl"
 #include "segment_lists.glsl"
 #include "segment.glsl"
 #include "integrator.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 0, rgba32f) uniform writeonly image2D picture;
-
-// By their middles: rounding of thin ones does not change that order.
-bool is_before(uint a, uint b) {
-  float middle_a = nodes[a].z_front + 0.5 * nodes[a].z_length, middle_b = nodes[b].z_front + 0.5 * nodes[b].z_length;
-  return middle_a < middle_b || (middle_a == middle_b && nodes[a].scalar_front < nodes[b].scalar_front);
-}
-
-// Merge sort from the bottom up, in place.
-uint sort_list(uint head) {
-  for (uint run = 1u;; run *= 2u) {
-    uint left = head, tail = kNoNode, merges = 0u;
-    head = kNoNode;
-    while (left != kNoNode) {
-      ++merges;
-      uint right = left, left_count = 0u;
-      while (left_count < run && right != kNoNode) {
-        right = nodes[right].next;
-        ++left_count;
-      }
-      uint right_count = run;
-      while (left_count > 0u || (right_count > 0u && right != kNoNode)) {
-        bool takes_left = left_count > 0u && (right_count == 0u || right == kNoNode || !is_before(right, left));
-        uint taken = takes_left ? left : right;
-        if (takes_left) {
-          left = nodes[left].next;
-          --left_count;
-        } else {
-          right = nodes[right].next;
-          --right_count;
-        }
-        if (tail == kNoNode)
-          head = taken;
-        else
-          nodes[tail].next = taken;
-        tail = taken;
-      }
-      left = right;
-    }
-    nodes[tail].next = kNoNode;
-    if (merges <= 1u) return head;
-  }
-}
+layout(binding = 0, rgba32f) uniform image2D picture;  // colour and transmittance, until a pixel is done
 
 void main() {
   ivec2 pixel = pixel_of(gl_WorkGroupID, gl_LocalInvocationIndex);
   if (is_outside_rows(pixel)) return;
   uint place = place_of(pixel);
   uint node = heads[place];
-  vec4 sum = kNothingYet;
-  if (node != kNoNode) {
-    Ray ray = ray_of(pixel);
-    node = sort_list(node);
-    while (node != kNoNode) {
-      Node passed = nodes[node];
-      Segment segment = Segment(passed.scalar_front, passed.scalar_back, passed.z_length * ray.world_per_z);
-      Front front = front_at(segment.scalar_front);
-      integrate(segment, front, sum);
-      node = passed.next;
-      if (frame.use_early_ray_termination != 0 && is_settled(sum)) break;
-    }
+  bool is_first = projection.is_first_pass != 0;
+  if (node == kNoNode) {
+    if (is_first) imageStore(picture, pixel, vec4(0.0));
+    return;
   }
-  imageStore(picture, pixel, min(vec4(sum.rgb, 1.0 - sum.a), 1.0));
+  vec4 sum = is_first ? kNothingYet : imageLoad(picture, pixel);
+  Ray ray = ray_of(pixel);
+  for (int i = 0; i < projection.segments_a_pass && node != kNoNode; ++i) {
+    Node passed = nodes[node];
+    Segment segment = Segment(passed.scalar_front, passed.scalar_back, passed.z_length * ray.world_per_z);
+    Front front = front_at(segment.scalar_front);
+    integrate(segment, front, sum);
+    node = frame.use_early_ray_termination != 0 && is_settled(sum) ? kNoNode : passed.next;
+  }
+  heads[place] = node;
+  bool is_done = node == kNoNode;
+  imageStore(picture, pixel, is_done ? min(vec4(sum.rgb, 1.0 - sum.a), 1.0) : sum);
+  if (!is_done) atomicAdd(list_counters.unfinished_count, 1u);
 }

@@ -2,7 +2,9 @@
 // 2010).
 
 layout(std430, binding = 0) buffer ListCounters {
-  uint node_count;  // that were asked for, more than there is room for at times
+  uint node_count;        // that were asked for, more than there is room for at times
+  uint unfinished_count;  // pixels that need another pass
+  uint too_long_count;    // lists that cannot be sorted
 } list_counters;
 
 struct Node {

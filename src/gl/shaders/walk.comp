@@ -53,10 +53,8 @@ void resume(Ray ray, Pause pause, inout Walker walker) {
     walker.z[k] = vertex.z;
     walker.scalar[k] = vertex.w;
   }
-  walker.weight = max(vec3(walker.x[1] * walker.y[2] - walker.y[1] * walker.x[2],
-                           walker.x[2] * walker.y[0] - walker.y[2] * walker.x[0],
-                           walker.x[0] * walker.y[1] - walker.y[0] * walker.x[1]),
-                      0.0);
+  vec2 a = vec2(walker.x.x, walker.y.x), b = vec2(walker.x.y, walker.y.y), c = vec2(walker.x.z, walker.y.z);
+  walker.weight = max(vec3(edge_product(b, c), edge_product(c, a), edge_product(a, b)), 0.0);
 }
 
 void main() {
@@ -101,7 +99,9 @@ void main() {
     bool is_pending_segment = false;
     while (is_pending_segment || (steps_left > 0u && walker.cell != kNoCell)) {
       if (!is_pending_segment) {
+#ifdef BEHIND_EYE
         bool is_behind = walker.z_front < frame.z_near;
+#endif
         Segment segment = walk_cell(ray, walker);
 #ifdef BEHIND_EYE
         if (is_behind) front = front_at(segment.scalar_front);

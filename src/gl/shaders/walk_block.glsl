@@ -6,4 +6,4 @@ uint node_count;      // of lists: entries that there is room for
 int steps;            // of a ray in one pass, at most
 int is_first_pass;
 int is_first_layer;   // of peeled faces
-int unused_0;
+uint sorted_run;      // of lists: entries in a row that are in order; 0: the first pass
