@@ -13,6 +13,7 @@ cloud='builtin:turbulence?size=64&type=float32&seed=5 --filter bspline --transfe
 # Of docs/methods/classification.md: the options that its figures have in common.
 green="--resolution 250,250 --transfer-function docs/methods/random-green.json $atom 17.5"
 shells="--resolution 180,180 --transfer-function rainbow:peaks=4 --unit-distance 0.5 $atom 18"
+holes="builtin:buckyball?cells=60000 --resolution 180,180 --transfer-function rainbow:peaks=4 --range 0.1,1.04 --unit-distance 0.004 $ball 23"
 waves='--resolution 190,190 --transfer-function coolwarm:peaks=1 --range 0,1 --unit-distance 0.012 --camera-position -1.9,-3,4.6 --camera-focal-point 0,0,-0.05 --camera-view-up 0,0,1 --camera-view-angle 22'
 
 # Of docs/methods/light.md: each on a mesh and on a grid.
@@ -20,6 +21,11 @@ mesh="builtin:buckyball?cells=500000 --resolution 300,300 $ball 23"
 grid='builtin:marschner-lobb?size=96 --resolution 300,300 --filter bspline-interpolating'
 side='--lights directional:-1,0.6,-1.2 --shadows'
 white='0.85,0.8,0.7'
+
+# Of docs/methods/slicing.md: planes across the view.
+planes='builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 --backend gl --source slices=view-3d'
+few="$planes --slices 24 --transfer-function viridis:peaks=5 --range 0.5,0.9 --unit-distance 0.002"
+fog="$planes --transfer-function inferno:ramp --range 0.45,0.75 --unit-distance 0.02 --lights directional:-1,0.6,-1.2*1.5 --gradient-threshold 1000"
 
 # Of docs/methods/multidimensional.md: each on a mesh and on a grid.
 duct="builtin:duct?cells=300000 --array pressure --resolution 300,300 $above 33"
@@ -57,6 +63,10 @@ methods  shells-rate-0.5   builtin:hydrogen?size=32 $shells --samples-per-voxel 
 methods  shells-rate-1     builtin:hydrogen?size=32 $shells --samples-per-voxel 1
 methods  shells-rate-2     builtin:hydrogen?size=32 $shells --samples-per-voxel 2
 methods  shells-rate-4     builtin:hydrogen?size=32 $shells --samples-per-voxel 4
+methods  holes-post-1      $holes --integrator post --samples 1
+methods  holes-post-2      $holes --integrator post --samples 2
+methods  holes-post-4      $holes --integrator post --samples 4
+methods  holes-none        $holes
 methods  waves             builtin:marschner-lobb?size=321 $waves
 methods  waves-nearest     builtin:marschner-lobb $waves --filter nearest
 methods  waves-linear      builtin:marschner-lobb $waves
@@ -87,6 +97,12 @@ methods  clip-mesh         $mesh --isosurface 0.45 --transfer-function inferno:p
 methods  clip-grid         builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 --transfer-function viridis:peaks=5 --range 0.3,0.9 --unit-distance 0.003 --shade --clip-sphere outside:0.5,0.2,0.8,0.45
 methods  weight-mesh       builtin:duct?cells=300000 --array speed --resolution 300,300 --transfer-function turbo:constant=0.5 $above 33 --opacity-weight scalar-difference --opacity-weight-scale 0.2
 methods  weight-grid       builtin:turbulence?size=64&type=float32&seed=4 --resolution 300,300 --filter bspline --transfer-function viridis:constant=0.3 --opacity-weight gradient --opacity-weight-scale 0.1
+methods  slices-post       $few --classification post
+methods  slices-linear     $few --slabs linear
+methods  slices-curved     $few
+methods  slices-light      $fog
+methods  slices-shadow     $fog --shadows half-angle
+methods  slices-translucent $fog --shadows half-angle --translucency 0.8 --translucency-angle 30
 methods  arrays-value-mesh $duct $bands
 methods  arrays-gradient-mesh $duct --variables gradient
 methods  arrays-color-mesh $duct $bands --color-array speed --color-function turbo
