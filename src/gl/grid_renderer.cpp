@@ -192,6 +192,9 @@ MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSetti
   block.cells_x = static_cast<int>(dimensions[0] - 1);
   block.cells_y = static_cast<int>(dimensions[1] - 1);
   block.cells_z = static_cast<int>(dimensions[2] - 1);
+  block.texel_x = 1.0f / static_cast<float>(dimensions[0]);
+  block.texel_y = 1.0f / static_cast<float>(dimensions[1]);
+  block.texel_z = 1.0f / static_cast<float>(dimensions[2]);
   block.bricks_x = static_cast<int>(drawn().bricks.counts[0]);
   block.bricks_y = static_cast<int>(drawn().bricks.counts[1]);
   block.bricks_z = static_cast<int>(drawn().bricks.counts[2]);

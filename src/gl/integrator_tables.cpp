@@ -28,13 +28,12 @@ IntegratorShader antiderivative_shader(bool has_coarse, bool is_beyond) {
   return shader;
 }
 
-/// `is_thin`: no segment is optically thicker than `kThin`.
-IntegratorShader gentle_shader(bool is_thin) {
+/// `is_whole`: no segment needs to be cut; `is_thin`: none is optically thicker than `kThin`.
+IntegratorShader gentle_shader(bool is_whole, bool is_thin) {
   IntegratorShader shader{"gentle", "integrators/gentle.glsl", {}};
-  if (is_thin) {
-    shader.name += ", thin";
-    shader.defines.emplace_back("IS_THIN", "1");
-  }
+  if (is_whole) shader.defines.emplace_back("IS_WHOLE", "1");
+  if (is_thin) shader.defines.emplace_back("IS_THIN", "1");
+  for (const auto& [name, value] : shader.defines) shader.name += ", " + name;
   return shader;
 }
 constexpr double kThin = 0.25;
@@ -71,7 +70,10 @@ std::vector<IntegratorShader> all_integrator_shaders() {
   return shaders;
 }
 
-std::vector<IntegratorShader> bounded_integrator_shaders() { return {gentle_shader(false), gentle_shader(true)}; }
+std::vector<IntegratorShader> bounded_integrator_shaders() {
+  return {gentle_shader(false, false), gentle_shader(false, true), gentle_shader(true, false),
+          gentle_shader(true, true)};
+}
 
 IntegratorShader IntegratorTables::point_shader() { return kCell; }
 
@@ -97,9 +99,9 @@ IntegratorShader IntegratorTables::shader(const RenderSettings& settings) const 
 }
 
 IntegratorShader IntegratorTables::shader(const RenderSettings& settings, const SegmentBounds& bounds) const {
-  const bool is_gentle = settings.integrator == Integrator::kAntiderivative && !sources_.is_constant &&
-                         bounds.is_gentle && !is_beyond_ && bounds.error <= split_threshold_;
-  return is_gentle ? gentle_shader(bounds.depth <= kThin) : shader(settings);
+  const bool is_gentle =
+      settings.integrator == Integrator::kAntiderivative && !sources_.is_constant && bounds.is_gentle && !is_beyond_;
+  return is_gentle ? gentle_shader(bounds.error <= split_threshold_, bounds.depth <= kThin) : shader(settings);
 }
 
 double IntegratorTables::color_change(float min, float max) const {
