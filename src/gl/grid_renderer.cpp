@@ -107,6 +107,7 @@ class GridRenderer final : public scene::FrameRenderer {
   optics::SteepnessTable steepness_;
   std::optional<Device> device_;
   std::vector<scene::BrickPlan> plans_;
+  RaySteps steps_;
   scene::PlanSettings planned_for_;
   bool is_planned_ = false, has_domain_ = false;
 };
@@ -142,6 +143,8 @@ void GridRenderer::plan(const RenderSettings& settings) {
   const scene::PlanSources sources = plan_sources(settings);
   plans_ = scene::plan_bricks(sources, wanted);
   device_->bricks.upload(sources, plans_, frame_);
+  const double step = settings.samples_per_voxel > 0.0 ? grid::mean_spacing(frame_) / settings.samples_per_voxel : 0.0;
+  steps_ = find_ray_steps(sources, plans_, {grid::longest_cell_diagonal(frame_), step}, device_->tables);
   device_->nodes.forget();
   planned_for_ = wanted;
   is_planned_ = true;
@@ -158,6 +161,9 @@ MarchKind GridRenderer::kind_of(const RenderSettings& settings) const {
   kind.has_samples = settings.samples_per_voxel > 0.0 && !kind.is_constant &&
                      !(is_preintegrated && !kind.is_uneven && drawn().missing_values == 0);
   if (kind.is_constant) kind.integrator = Integrator::kAntiderivative;  // all are the same
+  if (takes_points(kind) || kind.has_samples) return kind;
+  kind.has_strides = steps_.has_strides;
+  kind.has_cells = steps_.has_cells || !steps_.has_strides;
   return kind;
 }
 
@@ -186,6 +192,9 @@ MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSetti
   block.cells_x = static_cast<int>(dimensions[0] - 1);
   block.cells_y = static_cast<int>(dimensions[1] - 1);
   block.cells_z = static_cast<int>(dimensions[2] - 1);
+  block.texel_x = 1.0f / static_cast<float>(dimensions[0]);
+  block.texel_y = 1.0f / static_cast<float>(dimensions[1]);
+  block.texel_z = 1.0f / static_cast<float>(dimensions[2]);
   block.bricks_x = static_cast<int>(drawn().bricks.counts[0]);
   block.bricks_y = static_cast<int>(drawn().bricks.counts[1]);
   block.bricks_z = static_cast<int>(drawn().bricks.counts[2]);
@@ -229,7 +238,7 @@ void GridRenderer::march(const scene::GridView& view, const RenderSettings& sett
                          const scene::FrameContext& context, RenderStatistics& statistics) {
   Device& device = *device_;
   MarchKind kind = kind_of(settings);
-  kind.shader = takes_points(kind) ? IntegratorTables::point_shader() : device.tables.shader(settings);
+  kind.shader = takes_points(kind) ? IntegratorTables::point_shader() : device.tables.shader(settings, steps_.segments);
   device.values.volume().bind(kValueUnit);
   if (const Volume* squares = wants_squares(settings) ? device.values.squares(*context_) : nullptr) {
     squares->bind(kSquareUnit);

@@ -28,6 +28,16 @@ IntegratorShader antiderivative_shader(bool has_coarse, bool is_beyond) {
   return shader;
 }
 
+/// `is_whole`: no segment needs to be cut; `is_thin`: none is optically thicker than `kThin`.
+IntegratorShader gentle_shader(bool is_whole, bool is_thin) {
+  IntegratorShader shader{"gentle", "integrators/gentle.glsl", {}};
+  if (is_whole) shader.defines.emplace_back("IS_WHOLE", "1");
+  if (is_thin) shader.defines.emplace_back("IS_THIN", "1");
+  for (const auto& [name, value] : shader.defines) shader.name += ", " + name;
+  return shader;
+}
+constexpr double kThin = 0.25;
+
 IntegratorShader polynomial_shader(int degree, OpacityModel opacity) {
   const std::string number = std::to_string(degree);
   IntegratorShader shader{"polynomial=" + number, "integrators/polynomial.glsl", {{"DEGREE", number}}};
@@ -60,6 +70,11 @@ std::vector<IntegratorShader> all_integrator_shaders() {
   return shaders;
 }
 
+std::vector<IntegratorShader> bounded_integrator_shaders() {
+  return {gentle_shader(false, false), gentle_shader(false, true), gentle_shader(true, false),
+          gentle_shader(true, true)};
+}
+
 IntegratorShader IntegratorTables::point_shader() { return kCell; }
 
 IntegratorShader IntegratorTables::shader(const RenderSettings& settings) const {
@@ -81,6 +96,23 @@ IntegratorShader IntegratorTables::shader(const RenderSettings& settings) const 
       break;
   }
   throw Error(ErrorCode::kUnsupported, "the integrator 'pre' is for grids: choose another (tetravox list methods)");
+}
+
+IntegratorShader IntegratorTables::shader(const RenderSettings& settings, const SegmentBounds& bounds) const {
+  const bool is_gentle =
+      settings.integrator == Integrator::kAntiderivative && !sources_.is_constant && bounds.is_gentle && !is_beyond_;
+  return is_gentle ? gentle_shader(bounds.error <= split_threshold_, bounds.depth <= kThin) : shader(settings);
+}
+
+double IntegratorTables::color_change(float min, float max) const {
+  const optics::AntiderivativeTable& table = antiderivative_;
+  const auto node_of = [&](float scalar, double rounding) {
+    const double at = (static_cast<double>(scalar) - table.first) * table.nodes_per_scalar + rounding;
+    return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(table.last_node)));
+  };
+  // As far as intervals beside it reach.
+  const double change = table.color_variation[node_of(max, 2.0)] - table.color_variation[node_of(min, -1.0)];
+  return std::min(change, 1.0);
 }
 
 void IntegratorTables::set_transfer_function(const OpticalFunction& function, const TableSources& sources) {
@@ -172,6 +204,7 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance, con
   block.density_per_unit = table.density_per_unit;
   block.units_per_density = table.units_per_density;
   block.split_threshold = 12.0f * tolerance;
+  split_threshold_ = block.split_threshold;
   block.last_node = table.last_node;
   is_beyond_ = !table.covers_data || may_overshoot;
   block.points_first = control_points_.first;

@@ -44,8 +44,17 @@ struct IntegratorShader {
   void add_to(ShaderRecipe& recipe) const;
 };
 
+/// What holds for all segments of a frame.
+struct SegmentBounds {
+  bool is_gentle = false;  ///< whether scalars may be rounded to nodes of the table (`scene::BrickPlan::is_gentle`)
+  double depth = 0.0;      ///< largest optical depth
+  double error = 0.0;      ///< largest of depth^2 times the change of colour
+};
+
 /// All that there may be.
 std::vector<IntegratorShader> all_integrator_shaders();
+/// Those that rely on bounds of segments.
+std::vector<IntegratorShader> bounded_integrator_shaders();
 
 /// The tables of one transfer function. With the context current.
 class IntegratorTables {
@@ -57,11 +66,15 @@ class IntegratorTables {
             bool may_overshoot = false);
   /// Of the settings bound last. @throws Error (kUnsupported) for an integrator that this backend does not know.
   IntegratorShader shader(const RenderSettings& settings) const;
+  /// The same where more is known of the segments: a cheaper one, if they allow it.
+  IntegratorShader shader(const RenderSettings& settings, const SegmentBounds& bounds) const;
   /// Of points that are looked up one by one: cell data, and samples.
   static IntegratorShader point_shader();
   const optics::ControlPointTable& control_points() const { return control_points_; }
   /// Stored scalars from node to node of the antiderivatives.
   float node_width() const { return 1.0f / antiderivative_.nodes_per_scalar; }
+  /// Bound on the change of colour between two stored scalars.
+  double color_change(float min, float max) const;
   std::uint64_t bytes() const;
 
  private:
@@ -72,7 +85,8 @@ class IntegratorTables {
   TableSources sources_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
-  bool is_beyond_ = false;  // whether scalars may lie beyond the table of antiderivatives
+  double split_threshold_ = 0.0;  // of SegmentBounds::error
+  bool is_beyond_ = false;        // whether scalars may lie beyond the table of antiderivatives
   bool has_antiderivatives_ = false, has_control_points_ = false;  // on the device
   BufferTexture nodes_, variation_, marks_, points_, intervals_;
   scene::PreintegrationCache preintegration_;

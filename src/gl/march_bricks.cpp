@@ -1,5 +1,6 @@
 #include "src/gl/march_bricks.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 
@@ -12,6 +13,26 @@ std::uint32_t pack_plan(scene::BrickPlan plan, bool has_missing) {
   }
   return plan.level | static_cast<std::uint32_t>(plan.stride) << 8 | static_cast<std::uint32_t>(plan.is_curved) << 16 |
          static_cast<std::uint32_t>(plan.is_gentle) << 17 | static_cast<std::uint32_t>(has_missing) << 18;
+}
+
+RaySteps find_ray_steps(const scene::PlanSources& sources, const std::vector<scene::BrickPlan>& plans,
+                        const StepLengths& lengths, const IntegratorTables& tables) {
+  RaySteps steps;
+  steps.segments.is_gentle = true;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const scene::BrickPlan& plan = plans[i];
+    if (plan.level == scene::BrickPlan::kTransparent) continue;
+    (plan.stride > 0 ? steps.has_strides : steps.has_cells) = true;
+    steps.segments.is_gentle &= plan.is_gentle;
+    const ValueRange range = scene::range_of(sources, i);
+    const auto min = static_cast<float>(range.min), max = static_cast<float>(range.max);
+    const int cells = std::max(1, int{plan.stride}) << plan.level;
+    const double length = plan.stride > 0 && lengths.sampled > 0.0 ? lengths.sampled : cells * lengths.cell;
+    const double depth = length * static_cast<double>(sources.steepness->largest_extinction(min, max));
+    steps.segments.depth = std::max(steps.segments.depth, depth);
+    steps.segments.error = std::max(steps.segments.error, depth * depth * tables.color_change(min, max));
+  }
+  return steps;
 }
 
 void MarchBricks::upload(const scene::PlanSources& sources, const std::vector<scene::BrickPlan>& plans,

@@ -4,6 +4,7 @@
 
 #include "src/gl/blocks.h"
 #include "src/gl/filtered_nodes.h"
+#include "src/gl/integrator_tables.h"
 #include "src/gl/resources.h"
 #include "src/grid/frame.h"
 #include "src/scene/brick_plan.h"
@@ -20,6 +21,22 @@ inline constexpr GLuint kBrickUnit = 6, kPlaneUnit = 7, kSteepnessUnit = 8, kVal
 /// A brick's plan as shaders have it (march.glsl): level, stride, flags. Steps are of the values themselves, which cost
 /// no more here than those of larger cells; what remains of levels is one cell for all of a constant brick.
 std::uint32_t pack_plan(scene::BrickPlan plan, bool has_missing);
+
+/// What rays do in the bricks that are seen.
+struct RaySteps {
+  bool has_strides = false;  ///< equal steps in some
+  bool has_cells = false;    ///< from cell to cell in some
+  SegmentBounds segments;
+};
+
+/// World lengths of the longest segments.
+struct StepLengths {
+  double cell = 0.0;     ///< of one cell
+  double sampled = 0.0;  ///< of a step at a fixed rate; 0: there is none
+};
+
+RaySteps find_ray_steps(const scene::PlanSources& sources, const std::vector<scene::BrickPlan>& plans,
+                        const StepLengths& lengths, const IntegratorTables& tables);
 
 /// Plans, steepness table, planes of uneven axes. With the context current.
 class MarchBricks {

@@ -21,13 +21,14 @@ struct Counters {
 std::string marcher_file(const MarchKind& kind) {
   if (kind.is_constant) return "march_constants.glsl";
   if (kind.integrator == Integrator::kPre) return kind.has_samples ? "sample_densities.glsl" : "march_densities.glsl";
-  return kind.has_samples ? "sample_scalars.glsl" : "march_scalars.glsl";
+  if (kind.has_samples) return "sample_scalars.glsl";
+  return kind.has_cells ? "march_scalars.glsl" : "march_strides.glsl";
 }
 
 std::string key_of(const MarchKind& kind) {
   std::string key = name_of(kind.integrator) + " " + kind.shader.name;
-  for (const bool flag :
-       {kind.is_uneven, kind.is_constant, kind.is_nearest, kind.has_nodes, kind.has_squares, kind.has_samples})
+  for (const bool flag : {kind.is_uneven, kind.is_constant, kind.is_nearest, kind.has_nodes, kind.has_squares,
+                          kind.has_samples, kind.has_strides, kind.has_cells})
     key += flag ? '1' : '0';
   return key;
 }
@@ -42,6 +43,7 @@ ShaderRecipe recipe_of_march(const MarchKind& kind) {
   define(kind.is_uneven, "IS_UNEVEN");
   define(kind.is_nearest, "IS_NEAREST");
   define(kind.has_nodes, "HAS_NODES");
+  define(kind.has_strides, "HAS_STRIDES");
   recipe.includes.emplace_back("marcher.glsl", marcher_file(kind));
   kind.shader.add_to(recipe);
   const char* nodes = "nodes_of_texture.glsl";
@@ -63,6 +65,20 @@ std::vector<MarchKind> march_kinds() {
     if (takes_points(kind)) kind.shader = IntegratorTables::point_shader();
     kinds.push_back(kind);
   };
+  const auto add_each_way = [&](MarchKind kind) {
+    for (const bool has_squares : {false, true}) {
+      kind.has_squares = has_squares;
+      if (has_squares && kind.has_nodes) continue;
+      kind.has_strides = false;
+      kind.has_cells = true;
+      add(kind);
+      if (kind.has_samples || kind.is_uneven) continue;
+      kind.has_strides = true;
+      add(kind);
+      kind.has_cells = false;
+      add(kind);
+    }
+  };
   for (const bool is_uneven : {false, true}) {
     for (const bool is_nearest : {false, true}) {
       MarchKind kind;
@@ -83,10 +99,12 @@ std::vector<MarchKind> march_kinds() {
           if (shader.name == "cylindrical" || shader.name == "cell data") continue;
           kind.integrator = shader.name == "post" ? Integrator::kPost : Integrator::kPartial;
           kind.shader = shader;
-          for (const bool has_squares : {false, true}) {
-            kind.has_squares = has_squares;
-            if (!has_squares || !has_nodes) add(kind);
-          }
+          add_each_way(kind);
+        }
+        kind.integrator = Integrator::kAntiderivative;
+        for (const IntegratorShader& shader : bounded_integrator_shaders()) {
+          kind.shader = shader;
+          if (!has_samples) add_each_way(kind);
         }
       }
   }

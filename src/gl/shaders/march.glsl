@@ -15,6 +15,7 @@ layout(binding = 8) uniform samplerBuffer steepnesses;  // [levels][bins], see s
 // Pieces that the pass has integrated; a pass ends, wherever a ray is, once they are enough (`pieces_a_pass`). A ray gets
 // on in every pass.
 uint work_done = 0u;
+uint segment_count = 0u;  // for statistics
 bool ends_pass(float reached, float begun) { return work_done >= uint(march.most_work) && reached > begun; }
 
 const float kParallel = 1e-6;  // a ray that moves less along an axis is parallel to its planes

@@ -14,7 +14,7 @@ int is_first_pass;
 int plane_base_y;    // where the planes of the second axis begin, and of the third
 int plane_base_z;
 int most_work;       // pieces that a ray is taken through in a pass, about
-int unused_b;
+int unused_a;
 float texel_offset;  // stored scalar = texel_offset + texel * texel_scale
 float texel_scale;
 float allowed_rate;  // error in colour for one unit of world length that a segment may have
@@ -23,3 +23,7 @@ float steepness_first;
 float bins_per_scalar;
 float sample_distance;  // world length between samples at a fixed rate; 0: none
 float negligible;       // transmittance below which a ray ends
+float texel_x;  // sides of a texel where that of a texture with as many as there are values is 1
+float texel_y;
+float texel_z;
+int unused_b;

@@ -23,3 +23,5 @@ float march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, in
   }
   return walk.front;
 }
+
+#include "whole_bricks.glsl"

@@ -42,12 +42,13 @@ void main() {
     has_met = pauses[place].has_met != 0u;
     carried = Carried(pauses[place].sample_value, pauses[place].sample_depth, pauses[place].sample_number, depths.y);
   }
-  uint segment_count = 0u;
   BrickWalk walk;
   walk.z = walk.z_exit = 0.0;
-  bool is_done = depths.x >= depths.y;
+  bool is_done = depths.x >= depths.y, is_inside = false;
   if (!is_done) walk = enter_grid(ray, depths.x, depths.y);
-  for (int i = 0; !is_done && i < march.bricks_a_pass && work_done < uint(march.most_work); ++i) {
+  Marcher marcher = no_brick_yet();
+  int bricks_left = march.bricks_a_pass;
+  while (!is_done && !is_waiting && bricks_left > 0 && work_done < uint(march.most_work)) {
     uvec4 plan = uvec4(kTransparent);
     float leave = 0.0;
     while (!is_done) {
@@ -60,14 +61,22 @@ void main() {
 #ifdef HAS_NODES
     is_waiting = plan.w == 0u;
 #endif
-    if (is_done || is_waiting) break;
-    has_met = true;
-    float reached = march_brick(ray, walk.brick, plan, walk.z, leave, sum, segment_count);
-    if (reached < leave)
-      walk.z = reached;  // the pass has ended: the brick is entered again, from there
-    else
-      leave_brick(ray, walk);
-    is_done = has_left(walk) || is_over(sum);
+    is_inside = !is_done && !is_waiting;
+    if (is_inside) {
+      has_met = true;
+      enter_brick(ray, walk.brick, plan, walk.z, leave, marcher);
+    }
+    bool is_inside_still = is_inside;
+    while (is_inside_still) is_inside_still = take_step(ray, marcher, sum);
+    if (is_inside) {
+      float reached = reached_by(marcher);
+      --bricks_left;
+      if (reached < leave)
+        walk.z = reached;  // the pass has ended: the brick is entered again, from there
+      else
+        leave_brick(ray, walk);
+      is_done = has_left(walk) || is_over(sum);
+    }
   }
   if (segment_count > 0u) atomicAdd(counters.segments[place % 64u], segment_count);
   pauses[place].z = is_done ? kNever : walk.z;

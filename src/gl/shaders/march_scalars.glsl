@@ -5,21 +5,7 @@
 #include "march.glsl"
 #include "integrator.glsl"
 #include "nodes.glsl"
-
-float mix_corners(vec4 low, vec4 high, vec3 t) {
-  vec4 square = mix(low, high, t.z);
-  vec2 edge = mix(square.xy, square.zw, t.y);
-  return mix(edge.x, edge.y, t.x);
-}
-
-// The field of an even lattice anywhere in it.
-float sample_lattice(Lattice l, float z) {
-  vec3 at = l.origin + l.direction * z;
-  ivec3 cell = ivec3(clamp(at, vec3(0.0), vec3(l.size - 1)));
-  vec4 low, high;
-  fetch_corners(l, cell, low, high);
-  return mix_corners(low, high, at - vec3(cell));
-}
+#include "sampling.glsl"
 
 // c.x + c.y u + c.z u^2 + c.w u^3: the scalar between two places in a cell.
 vec4 make_cubic(vec4 low, vec4 high, vec3 at, vec3 to) {
@@ -57,69 +43,110 @@ float count_pieces(vec4 cubic, float steepness, float transmittance, float scala
   return clamp(ceil(sqrt(transmittance * bend * most / march.allowed_rate)), 1.0, march.most_pieces);
 }
 
-// Equal steps, each a segment; how far they came.
-float march_strides(GridRay ray, Lattice l, float stride, float z, float leave, inout vec4 sum, inout uint segments) {
-  float depth = leave - z;
-  float wanted = march.sample_distance > 0.0 ? depth * ray.world_per_z / march.sample_distance
-                                             : depth * length(l.direction) / stride;
-  float steps = clamp(ceil(wanted), 1.0, 1e5), share = depth / steps;
-  float scalar_front = sample_lattice(l, z);
-  Front front = front_at(scalar_front);
-  float number = 0.0;
-  while (number < steps && !ends_pass(z + number * share, z)) {
-    number += 1.0;
-    float scalar_back = sample_lattice(l, z + number * share);
-    integrate(Segment(scalar_front, scalar_back, share * ray.world_per_z), front, sum);
-    scalar_front = scalar_back;
-    ++work_done;
-  }
-  segments += uint(number);
-  return number < steps ? z + number * share : leave;
-}
+// A ray in a brick.
+struct Marcher {
+  Lattice lattice;
+  float steepness;  // bound on that of the function there
+  float stride;     // depth of a step; 0: from cell to cell
+  CellWalk walk;
+  float begun;      // where it came in
 
-// From cell to cell; how far it came.
-float march_cells(GridRay ray, Lattice l, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
-  float steepness = (plan.x & kIsCurved) != 0u ? uintBitsToFloat(plan.y) : 0.0;
-  CellWalk walk = enter_lattice(ray, l, z, leave);
+  // The cell, or step, at hand, which it takes in linear pieces.
+  vec4 cubic;
+  float cell_front, pieces, number;
+
   Front front;
-  bool is_fresh = true;
-  float scalar_front = 0.0;
-  while (walk.front < leave && !ends_pass(walk.front, z)) {
-    vec4 low, high;
-    fetch_corners(l, walk.cell, low, high);
-    float back = back_of(walk), world = (back - walk.front) * ray.world_per_z;
-    vec4 cubic = make_cubic(low, high, place_in_cell(ray, l, walk.cell, walk.front),
-                            place_in_cell(ray, l, walk.cell, back));
-    float pieces = 0.0, cell_back = cubic.x + cubic.y + cubic.z + cubic.w;
-    if (is_missing((low.x + low.y + low.z + low.w) + (high.x + high.y + high.z + high.w))) {
-      is_fresh = true;  // a cell with a corner that is missing is transparent; behind it the ray sets out anew
-    } else {
-      if (is_fresh) {
-        scalar_front = cubic.x;
-        front = front_at(scalar_front);
-        is_fresh = false;
-      }
-      pieces = count_pieces(cubic, steepness, sum.a, cell_back);
-    }
-    for (float number = 1.0; number <= pieces; number += 1.0) {
-      float reached = walk.front + (back - walk.front) * (number - 1.0) / pieces;
-      if (ends_pass(reached, z)) return reached;
-      float scalar_back = number >= pieces ? cell_back : eval_cubic(cubic, number / pieces);
-      integrate(Segment(scalar_front, scalar_back, world / pieces), front, sum);
-      scalar_front = scalar_back;
-      ++work_done;
-    }
-    leave_cell(ray, l, back, walk);
-    ++segments;
-    ++work_done;
-  }
-  return walk.front;
+  float scalar_front;
+  float continues;  // depth that `front` is of
+};
+
+Marcher no_brick_yet() {
+  Marcher m;
+  m.walk.front = m.walk.leave = m.begun = m.continues = -kNever;
+  m.pieces = m.number = m.stride = m.steepness = m.cell_front = m.scalar_front = 0.0;
+  m.cubic = vec4(0.0);
+  m.front = front_at(0.0);
+  return m;
 }
 
-// How far it came.
-float march_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, inout vec4 sum, inout uint segments) {
-  Lattice l = lattice_of(ray, brick, plan);
-  uint stride = plan.x >> 8 & 0xFFu;
-  if (stride > 0u) return march_strides(ray, l, float(stride), z, leave, sum, segments);
-  return march_cells(ray, l, plan, z, leave, sum, segments);
+void enter_brick(GridRay ray, ivec3 brick, uvec4 plan, float z, float leave, inout Marcher m) {
+  m.lattice = lattice_of(ray, brick, plan);
+  m.steepness = (plan.x & kIsCurved) != 0u ? uintBitsToFloat(plan.y) : 0.0;
+  m.walk = enter_lattice(ray, m.lattice, z, leave);
+  m.begun = z;
+  m.pieces = m.number = 0.0;
+#ifdef HAS_NODES
+  m.continues = -kNever;  // lattices side by side may differ at their border
+#endif
+#ifdef HAS_STRIDES
+  float stride = float(plan.x >> 8 & 0xFFu);
+  m.stride = stride > 0.0 ? (leave - z) / count_strides(ray, m.lattice, stride, leave - z) : 0.0;
+#endif
+}
+
+// Where it has come to.
+float reached_by(Marcher m) {
+  return m.number < m.pieces ? mix(m.cell_front, m.walk.front, max(m.number, 0.0) / m.pieces) : m.walk.front;
+}
+
+// The next cell, or step. Where the ray sets out anew a piece without length comes before it.
+void take_cell(GridRay ray, float transmittance, inout Marcher m) {
+  bool is_fresh = m.continues != m.walk.front, is_stride = false;
+  float plane = min(m.walk.next.x, min(m.walk.next.y, m.walk.next.z));
+#ifdef HAS_STRIDES
+  is_stride = m.stride > 0.0;
+  if (is_stride) plane = m.walk.front + (is_fresh ? 0.0 : m.stride);
+#endif
+  float back = max(plane < m.walk.leave_soon ? plane : m.walk.leave, m.walk.front);
+  ivec3 cell = m.walk.cell;
+#ifdef HAS_STRIDES
+  if (is_stride) cell = ivec3(clamp(m.lattice.origin + m.lattice.direction * back, vec3(0.0), vec3(m.lattice.size - 1)));
+#endif
+  vec4 low, high;
+  fetch_corners(m.lattice, cell, low, high);
+  vec3 to = place_in_cell(ray, m.lattice, cell, back);
+  vec3 at = is_stride ? to : place_in_cell(ray, m.lattice, cell, m.walk.front);
+  vec4 cubic = make_cubic(low, high, at, to);
+  m.cell_front = m.walk.front;
+  m.number = is_fresh && !is_stride ? -1.0 : 0.0;
+  m.pieces = count_pieces(cubic, m.steepness, transmittance, cubic.x + cubic.y + cubic.z + cubic.w);
+  m.continues = back;
+  // A cell with a corner that is missing is transparent; behind it the ray sets out anew.
+  bool is_gap = is_missing((low.x + low.y + low.z + low.w) + (high.x + high.y + high.z + high.w));
+  if (is_gap) {
+    cubic = vec4(0.0);
+    m.number = -1.0;
+    m.pieces = 0.0;
+    m.continues = -kNever;
+  }
+  m.cubic = cubic;
+  uint count = is_fresh && is_stride ? 0u : 1u;
+  segment_count += count;
+  work_done += count;
+  leave_cell(ray, m.lattice, back, m.walk);
+}
+
+// The next piece; false where the brick, or the pass, is over.
+bool take_step(GridRay ray, inout Marcher m, inout vec4 sum) {
+#ifndef TAKES_WHOLE_SEGMENTS
+  if (!is_pending(m.front)) {
+#endif
+    if (m.number >= m.pieces) take_cell(ray, sum.a, m);
+    m.number += 1.0;
+    float back = m.number < m.pieces ? eval_cubic(m.cubic, m.number / m.pieces)
+                                     : m.cubic.x + m.cubic.y + m.cubic.z + m.cubic.w;
+    float depth = m.number > 0.0 ? (m.walk.front - m.cell_front) / m.pieces : 0.0;
+    Segment segment = Segment(m.scalar_front, m.number > 0.0 ? back : m.cubic.x, depth * ray.world_per_z);
+    m.scalar_front = segment.scalar_back;
+    work_done += uint(m.number > 0.0);
+#ifdef TAKES_WHOLE_SEGMENTS
+  integrate(segment, m.front, sum);
+  return (m.number < m.pieces || m.walk.front < m.walk.leave) && !ends_pass(reached_by(m), m.begun);
+#else
+    begin(segment, m.front);
+  }
+  advance(m.front, sum);
+  return is_pending(m.front) ||
+         ((m.number < m.pieces || m.walk.front < m.walk.leave) && !ends_pass(reached_by(m), m.begun));
+#endif
 }

@@ -4,11 +4,12 @@
 
 layout(binding = 10) uniform sampler3D squares;  // (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)
 
-vec4 fetch_square(ivec3 at) { return textureLod(squares, (vec3(at) + 0.5) / vec3(cell_count() + 1), 0.0); }
+vec4 fetch_square(vec3 middle) { return textureLod(squares, middle, 0.0); }
 
 // Corners of a cell: lower or upper (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
 void fetch_corners(Lattice l, ivec3 cell, out vec4 low, out vec4 high) {
   ivec3 at = l.first + (cell << l.level);  // larger cells are constant
-  low = march.texel_offset + march.texel_scale * fetch_square(at);
-  high = march.texel_offset + march.texel_scale * fetch_square(at + ivec3(0, 0, 1));
+  vec3 middle = (vec3(at) + 0.5) * vec3(march.texel_x, march.texel_y, march.texel_z);
+  low = march.texel_offset + march.texel_scale * fetch_square(middle);
+  high = march.texel_offset + march.texel_scale * fetch_square(middle + vec3(0.0, 0.0, march.texel_z));
 }

@@ -15,4 +15,7 @@ void advance(inout Front front, inout vec4 sum) {
   front.is_pending = false;
 }
 
-#include "integrators/integrate.glsl"
+#define TAKES_WHOLE_SEGMENTS
+void integrate(Segment segment, inout Front front, inout vec4 sum) {
+  if (segment.world_length > 0.0) integrate_whole(segment, sum);
+}
