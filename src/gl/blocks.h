@@ -37,7 +37,7 @@ struct MakerBlock {
 struct ProjectionBlock {
 #include "src/gl/shaders/projection_block.glsl"
 };
-static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 5 * 16 &&
+static_assert(sizeof(FrameBlock) == 3 * 16 && sizeof(WalkBlock) == 2 * 16 && sizeof(TablesBlock) == 6 * 16 &&
               sizeof(PreintegrationBlock) == 3 * 16 && sizeof(MakerBlock) == 4 * 16 &&
               sizeof(ProjectionBlock) == 5 * 16 && sizeof(MarchBlock) == 10 * 16);
 static_assert(sizeof(SliceBlock) == (9 + 8 + 8 + 4 + 6) * 16);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace tetravox::gl {
@@ -106,7 +107,12 @@ class ContextOpener {
     std::shared_ptr<Context> context(new Context);
     context->display_ = display;
     context->context_ = made;
-    const Context::Current current = context->make_current();
+    std::optional<Context::Current> current;
+    try {
+      current.emplace(*context);
+    } catch (const Error&) {
+      return nullptr;  // others may do
+    }
     const std::string renderer = text_of(GL_RENDERER);
     context->device_ = {renderer, text_of(GL_VERSION), is_software(renderer)};
     context->limits_ = query_limits();

@@ -63,4 +63,16 @@ class Context {
   std::unique_ptr<std::string> complaint_ = std::make_unique<std::string>();  // at an address the driver may keep
 };
 
+/// Frees what lives on the device of a context. Where that cannot be current in this thread, its names are left to the
+/// end of the context.
+template <class Parts>
+void free_parts(const Context& context, std::unique_ptr<Parts>& parts) noexcept {
+  try {
+    const auto current = context.make_current();
+    parts.reset();
+  } catch (...) {
+    static_cast<void>(parts.release());
+  }
+}
+
 }  // namespace tetravox::gl

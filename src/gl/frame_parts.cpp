@@ -10,6 +10,7 @@ namespace tetravox::gl {
 namespace {
 
 constexpr GLuint kFrameBinding = 0, kColumnUnit = 0, kRowUnit = 1;
+constexpr std::size_t kBytesAtOnce = std::size_t{1} << 28;
 
 }  // namespace
 
@@ -76,8 +77,15 @@ void FrameParts::set_rows(int begin, int end) {
 
 void FrameParts::download(Image& image) const {
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
-  glGetTextureImage(picture_.get(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(image.pixels.size() * sizeof(float)),
-                    image.pixels.data());
+  // In parts: their sizes in bytes are 32-bit numbers.
+  const std::size_t row = 4 * static_cast<std::size_t>(frame_.width);
+  const int rows = static_cast<int>(kBytesAtOnce / (row * sizeof(float)));
+  for (int begin = 0; begin < frame_.height; begin += rows) {
+    const int count = std::min(rows, frame_.height - begin);
+    glGetTextureSubImage(picture_.get(), 0, 0, begin, 0, frame_.width, count, 1, GL_RGBA, GL_FLOAT,
+                         static_cast<GLsizei>(static_cast<std::size_t>(count) * row * sizeof(float)),
+                         image.pixels.data() + static_cast<std::size_t>(begin) * row);
+  }
 }
 
 std::uint64_t FrameParts::bytes() const {

@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -33,18 +32,14 @@ class GridRenderer final : public scene::FrameRenderer {
   GridRenderer(const PreparedGrid& grid, std::shared_ptr<Context> context)
       : grid_(grid), context_(std::move(context)), frame_(grid::make_grid_frame(grid.data.shape)) {
     const auto current = context_->make_current();
-    device_.emplace(grid, *context_);
+    device_ = std::make_unique<Device>(grid, *context_);
     context_->require_no_error("the grid");
   }
-  ~GridRenderer() override {
-    const auto current = context_->make_current();
-    device_.reset();
-  }
+  ~GridRenderer() override { free_parts(*context_, device_); }
 
   void set_transfer_function(const OpticalFunction& function) override {
     const optics::ScalarMap map = scalar_map();
-    device_->tables.set_transfer_function(
-        function, {map, grid_.scalar_range, diagonal(), grid::longest_cell_diagonal(frame_), false});
+    device_->tables.set_transfer_function(function, {map, grid_.scalar_range, diagonal(), false});
     optics::build_steepness_table(device_->tables.control_points(), map.stored_from_value(grid_.scalar_range.min),
                                   map.stored_from_value(grid_.scalar_range.max), steepness_);
     has_domain_ = is_planned_ = false;
@@ -105,7 +100,7 @@ class GridRenderer final : public scene::FrameRenderer {
   grid::GridFrame frame_;
   scene::FilteredField field_;
   optics::SteepnessTable steepness_;
-  std::optional<Device> device_;
+  std::unique_ptr<Device> device_;
   std::vector<scene::BrickPlan> plans_;
   RaySteps steps_;
   scene::PlanSettings planned_for_;
@@ -157,9 +152,8 @@ MarchKind GridRenderer::kind_of(const RenderSettings& settings) const {
   kind.is_constant = is_constant(settings);
   kind.is_nearest = kind.is_constant && grid_.data.association == Association::kPoint;
   kind.has_nodes = field_.kernel != nullptr;
-  const bool is_preintegrated = settings.integrator != Integrator::kPost && settings.integrator != Integrator::kPre;
-  kind.has_samples = settings.samples_per_voxel > 0.0 && !kind.is_constant &&
-                     !(is_preintegrated && !kind.is_uneven && drawn().missing_values == 0);
+  kind.has_samples =
+      settings.samples_per_voxel > 0.0 && !kind.is_constant && !scene::restarts_rate(drawn(), settings.integrator);
   if (kind.is_constant) kind.integrator = Integrator::kAntiderivative;  // all are the same
   if (takes_points(kind) || kind.has_samples) return kind;
   kind.has_strides = steps_.has_strides;
@@ -201,7 +195,6 @@ MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSetti
   block.plane_base_y = static_cast<int>(dimensions[0]);
   block.plane_base_z = static_cast<int>(dimensions[0] + dimensions[1]);
   block.bricks_a_pass = kBricksAPass;
-  block.most_work = pieces_a_pass(settings);
   block.texel_offset = device_->values.map().offset;
   block.texel_scale = device_->values.map().scale;
   block.allowed_rate = scene::allowed_rate_of(settings.tolerance, diagonal());
@@ -223,8 +216,6 @@ void GridRenderer::slice(const Camera& camera, const RenderSettings& settings, c
   const grid::GridFrame frame = grid::make_grid_frame(grid_.data.shape);
   const scene::GridView view = scene::make_grid_view(grid_, frame, camera, settings.width, settings.height);
   device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);
-  device.tables.bind(settings, scene::segment_tolerance(settings), context_->limits(), context.progress,
-                     filters_slices(settings));
   device.slices.draw(
       {grid_, frame, view, device.values, device.tables, device.frame, settings, *context_, context.progress},
       statistics);
@@ -244,7 +235,10 @@ void GridRenderer::march(const scene::GridView& view, const RenderSettings& sett
     squares->bind(kSquareUnit);
     kind.has_squares = true;
   }
-  MarchFrame frame{describe(view, settings), kind, device.frame, settings, context_->limits(), context.progress};
+  MarchBlock block = describe(view, settings);
+  constexpr int kCorners = 8;  // that pre-classification looks up, each
+  block.most_work = pieces_a_pass(kind.shader) / (kind.integrator == Integrator::kPre ? kCorners : 1);
+  MarchFrame frame{block, kind, device.frame, settings, context_->limits(), context.progress};
   const scene::PlanSources sources = plan_sources(settings);
   const FilteredBricks filtered = filtered_bricks(sources, settings);
   std::vector<NodePlace> places;
@@ -280,8 +274,9 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
   Device& device = *device_;
   const support::Timer timer;
   plan(settings);
-  device.tables.bind(settings, scene::segment_tolerance(settings), context_->limits(), context.progress,
-                     field_.kernel != nullptr);
+  const double longest = settings.samples_per_voxel > 0.0 ? grid::mean_spacing(frame_) / settings.samples_per_voxel
+                                                          : grid::longest_cell_diagonal(frame_);
+  device.tables.bind(settings, {longest, field_.kernel != nullptr}, context_->limits(), context.progress);
   statistics.plan_seconds = timer.seconds();
   const scene::GridView view = scene::make_grid_view(drawn(), frame_, camera, settings.width, settings.height);
   device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);

@@ -2,6 +2,7 @@
 
 #include "src/optics/iso_value_table.h"
 #include "src/optics/transparency_table.h"
+#include "src/scene/frame_renderer.h"
 #include "tetravox/error.h"
 
 #include <algorithm>
@@ -13,15 +14,20 @@ namespace {
 constexpr GLuint kControlPointUnit = 2, kFirstIntervalUnit = 3, kTableUnit = 4, kVariationUnit = 5, kMarkUnit = 11;
 constexpr GLuint kTablesBinding = 1;
 
-const IntegratorShader kCell{"cell data", "integrators/cell.glsl", {}};
-const IntegratorShader kPartial{"partial", "integrators/partial.glsl", {{"ISO_VALUES", "1"}}};
-const IntegratorShader kTable3d{"table3d", "integrators/table3d.glsl", {}};
-const IntegratorShader kCylindrical{"cylindrical", "integrators/cylindrical.glsl", {}};
-const IntegratorShader kPost{"post", "integrators/post.glsl", {}};
+/// Halves until the interval of a scalar is found: thousands of control points may share a bucket.
+constexpr int kProbes = 12;
+/// Samples that post-classification takes a piece: as integrators/post.glsl has it.
+constexpr int kSamplesAPiece = 16;
+
+const IntegratorShader kCell{"cell data", "integrators/cell.glsl", {}, 4 + kProbes};
+const IntegratorShader kPartial{"partial", "integrators/partial.glsl", {{"ISO_VALUES", "1"}}, 4};
+const IntegratorShader kTable3d{"table3d", "integrators/table3d.glsl", {}, 4};
+const IntegratorShader kCylindrical{"cylindrical", "integrators/cylindrical.glsl", {}, 4};
+const IntegratorShader kPost{"post", "integrators/post.glsl", {}, 4 + kSamplesAPiece*(2 + kProbes)};
 
 /// `has_coarse`: the table has places that are too coarse; `is_beyond`: scalars may lie beyond its ends.
 IntegratorShader antiderivative_shader(bool has_coarse, bool is_beyond) {
-  IntegratorShader shader{"antiderivative", "integrators/antiderivative.glsl", {}};
+  IntegratorShader shader{"antiderivative", "integrators/antiderivative.glsl", {}, 4};
   if (has_coarse) shader.defines.emplace_back("HAS_COARSE", "1");
   if (is_beyond) shader.defines.emplace_back("BEYOND", "1");
   for (const auto& [name, value] : shader.defines) shader.name += ", " + name;
@@ -30,7 +36,7 @@ IntegratorShader antiderivative_shader(bool has_coarse, bool is_beyond) {
 
 /// `is_whole`: no segment needs to be cut; `is_thin`: none is optically thicker than `kThin`.
 IntegratorShader gentle_shader(bool is_whole, bool is_thin) {
-  IntegratorShader shader{"gentle", "integrators/gentle.glsl", {}};
+  IntegratorShader shader{"gentle", "integrators/gentle.glsl", {}, 4};
   if (is_whole) shader.defines.emplace_back("IS_WHOLE", "1");
   if (is_thin) shader.defines.emplace_back("IS_THIN", "1");
   for (const auto& [name, value] : shader.defines) shader.name += ", " + name;
@@ -40,7 +46,7 @@ constexpr double kThin = 0.25;
 
 IntegratorShader polynomial_shader(int degree, OpacityModel opacity) {
   const std::string number = std::to_string(degree);
-  IntegratorShader shader{"polynomial=" + number, "integrators/polynomial.glsl", {{"DEGREE", number}}};
+  IntegratorShader shader{"polynomial=" + number, "integrators/polynomial.glsl", {{"DEGREE", number}}, 4};
   if (opacity == OpacityModel::kExponential) return shader;
   shader.name += ", linear";
   shader.defines.emplace_back("LINEAR_OPACITY", "1");
@@ -49,10 +55,9 @@ IntegratorShader polynomial_shader(int degree, OpacityModel opacity) {
 
 }  // namespace
 
-int pieces_a_pass(const RenderSettings& settings) {
+int pieces_a_pass(const IntegratorShader& shader) {
   constexpr int kIterations = 24000;  // the last piece or segment begun is finished
-  const int loops = settings.integrator == Integrator::kPost ? 4 + 3 * settings.samples : 4;
-  return std::max(kIterations / loops, 1);
+  return kIterations / shader.loops;
 }
 
 void IntegratorShader::add_to(ShaderRecipe& recipe) const {
@@ -152,8 +157,8 @@ void IntegratorTables::upload_control_points() {
   has_control_points_ = true;
 }
 
-void IntegratorTables::bind(const RenderSettings& settings, float tolerance, const Limits& limits,
-                            const Progress& progress, bool may_overshoot) {
+void IntegratorTables::bind(const RenderSettings& settings, const SegmentTraits& segments, const Limits& limits,
+                            const Progress& progress) {
   if (!has_control_points_) upload_control_points();
   points_.bind(kControlPointUnit);
   intervals_.bind(kFirstIntervalUnit);
@@ -185,13 +190,13 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance, con
     iso_values_.bind_texture(kVariationUnit);
   }
   if (scene::is_of_tables(integrator)) {
-    const double longest = sources_.longest_segment > 0.0 ? sources_.longest_segment : sources_.longest;
-    const optics::PreintegrationSource source{function_, sources_.map, sources_.range, longest, progress};
+    const optics::PreintegrationSource source{function_, sources_.map, sources_.range, segments.longest, progress};
+    require_table_size(settings, limits);
     if (settings.preintegration.device == TableDevice::kGpu) {
-      ray_integrals_.make(source, settings, limits);
+      ray_integrals_.make(source, settings);
     } else {
       preintegration_.prepare(source, settings);
-      ray_integrals_.bind(preintegration_, limits);
+      ray_integrals_.bind(preintegration_);
     }
   }
   const optics::AntiderivativeTable& table = antiderivative_;
@@ -203,13 +208,13 @@ void IntegratorTables::bind(const RenderSettings& settings, float tolerance, con
   block.nodes_per_scalar = table.nodes_per_scalar;
   block.density_per_unit = table.density_per_unit;
   block.units_per_density = table.units_per_density;
-  block.split_threshold = 12.0f * tolerance;
-  split_threshold_ = block.split_threshold;
+  block.split_threshold = split_threshold_ = 12.0f * scene::segment_tolerance(settings);
   block.last_node = table.last_node;
-  is_beyond_ = !table.covers_data || may_overshoot;
+  is_beyond_ = !table.covers_data || segments.may_overshoot;
   block.points_first = control_points_.first;
   block.buckets_per_scalar = control_points_.buckets_per_scalar;
   block.last_bucket = static_cast<int>(control_points_.first_interval.size()) - 1;
+  block.last_interval = control_points_.interval_count - 1;
   block.samples = settings.samples;
   block.first_iso = first_iso_;
   block.isos_per_scalar = isos_per_scalar_;

@@ -23,22 +23,23 @@ namespace tetravox::gl {
 /// The data that a function is for.
 struct TableSources {
   optics::ScalarMap map;
-  ValueRange range;              ///< of the values
-  double longest = 1.0;          ///< world length of the longest ray
-  double longest_segment = 0.0;  ///< the same of a segment; 0: that of the ray
-  bool is_constant = false;      ///< cell data: control points alone
+  ValueRange range;          ///< of the values
+  double longest = 1.0;      ///< world length of the longest ray
+  bool is_constant = false;  ///< cell data: control points alone
 };
 
-/// Pieces of segments that one invocation of a shader may integrate, so that no pass takes long, which drivers with a
-/// watchdog ask for, and none exceeds what llvmpipe allows: it leaves loops, without a word, once an invocation has
-/// gone through 65,535 iterations in all.
-int pieces_a_pass(const RenderSettings& settings);
+/// What is known of a frame's segments.
+struct SegmentTraits {
+  double longest = 0.0;        ///< world length: tables of ray integrals reach as far
+  bool may_overshoot = false;  ///< whether scalars may lie beyond the range of the data
+};
 
 /// What `#include "integrator.glsl"` stands for in the shaders of a source.
 struct IntegratorShader {
   std::string name;  ///< of its own for each variant
   std::string file;
   std::vector<std::pair<std::string, std::string>> defines;
+  int loops = 0;  ///< iterations of loops that a piece of a segment takes at most
 
   /// Makes the shader one that integrates so.
   void add_to(ShaderRecipe& recipe) const;
@@ -51,6 +52,11 @@ struct SegmentBounds {
   double error = 0.0;      ///< largest of depth^2 times the change of colour
 };
 
+/// Pieces of segments that one invocation of a shader may integrate, so that no pass takes long, which drivers with a
+/// watchdog ask for, and none exceeds what llvmpipe allows: it leaves loops, without a word, once an invocation has
+/// gone through 65,535 iterations in all.
+int pieces_a_pass(const IntegratorShader& shader);
+
 /// All that there may be.
 std::vector<IntegratorShader> all_integrator_shaders();
 /// Those that rely on bounds of segments.
@@ -60,10 +66,10 @@ std::vector<IntegratorShader> bounded_integrator_shaders();
 class IntegratorTables {
  public:
   void set_transfer_function(const OpticalFunction& function, const TableSources& sources);
-  /// Puts on the device what the integrator of these settings needs and is not there yet, and binds it. `tolerance`: of
-  /// a segment; `may_overshoot`: whether scalars may lie beyond the range of the data.
-  void bind(const RenderSettings& settings, float tolerance, const Limits& limits, const Progress& progress,
-            bool may_overshoot = false);
+  /// Puts on the device what the integrator of these settings needs and is not there yet, and binds it.
+  /// @throws Error (kUnsupported) for tables larger than the device allows, before they are made.
+  void bind(const RenderSettings& settings, const SegmentTraits& segments, const Limits& limits,
+            const Progress& progress);
   /// Of the settings bound last. @throws Error (kUnsupported) for an integrator that this backend does not know.
   IntegratorShader shader(const RenderSettings& settings) const;
   /// The same where more is known of the segments: a cheaper one, if they allow it.

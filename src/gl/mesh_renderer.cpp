@@ -10,7 +10,6 @@
 #include "tetravox/error.h"
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,13 +21,10 @@ class MeshRenderer final : public scene::FrameRenderer {
  public:
   MeshRenderer(const PreparedMesh& mesh, std::shared_ptr<Context> context) : mesh_(mesh), context_(std::move(context)) {
     const auto current = context_->make_current();
-    device_.emplace(mesh, context_->limits());
+    device_ = std::make_unique<Device>(mesh, context_->limits());
     context_->require_no_error("the mesh");
   }
-  ~MeshRenderer() override {
-    const auto current = context_->make_current();
-    device_.reset();
-  }
+  ~MeshRenderer() override { free_parts(*context_, device_); }
 
   void set_transfer_function(const OpticalFunction& function) override {
     const auto current = context_->make_current();
@@ -36,7 +32,6 @@ class MeshRenderer final : public scene::FrameRenderer {
     device_->tables.set_transfer_function(function, {{mesh_.scalar_offset, mesh_.scalar_scale},
                                                      mesh_.scalar_range,
                                                      diagonal(),
-                                                     longest_edge_,
                                                      mesh_.association == Association::kCell});
     has_domain_ = false;
   }
@@ -56,7 +51,7 @@ class MeshRenderer final : public scene::FrameRenderer {
     device.frame.begin(context_->limits(), frame, mesh_.world_per_local, settings);
     device.mesh.bind();
     const support::Timer timer;
-    device.tables.bind(settings, scene::segment_tolerance(settings), context_->limits(), context.progress);
+    device.tables.bind(settings, {longest_edge_, false}, context_->limits(), context.progress);
     statistics.plan_seconds = timer.seconds();
     const IntegratorShader integrator = device.tables.shader(settings);
     if (settings.source.value_or(Source::kWalk) == Source::kWalk)
@@ -104,7 +99,7 @@ class MeshRenderer final : public scene::FrameRenderer {
 
   const PreparedMesh& mesh_;
   std::shared_ptr<Context> context_;
-  std::optional<Device> device_;
+  std::unique_ptr<Device> device_;
   double longest_edge_ = 0.0;  // world length; 0: not known yet
   bool has_domain_ = false;
 };

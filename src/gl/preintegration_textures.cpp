@@ -11,8 +11,7 @@ constexpr GLuint kTableUnit = 4, kRatioUnit = 5, kBlockBinding = 7;
 
 }  // namespace
 
-void PreintegrationTextures::upload(const optics::PreintegrationTable& table, const Limits& limits) {
-  require_table_size(std::max(table.scalars, table.lengths), limits.volume_size);
+void PreintegrationTextures::upload(const optics::PreintegrationTable& table) {
   table_.table = make_table_texture(GL_TEXTURE_3D);
   glTextureStorage3D(table_.table.get(), 1, GL_RGBA32F, table.scalars, table.scalars, table.lengths);
   glTextureSubImage3D(table_.table.get(), 0, 0, 0, 0, table.scalars, table.scalars, table.lengths, GL_RGBA, GL_FLOAT,
@@ -24,8 +23,7 @@ void PreintegrationTextures::upload(const optics::PreintegrationTable& table, co
   table_.bytes = table.bytes();
 }
 
-void PreintegrationTextures::upload(const optics::PolynomialTable& table, const Limits& limits) {
-  require_table_size(table.scalars, limits.texture_size);
+void PreintegrationTextures::upload(const optics::PolynomialTable& table) {
   table_.table = make_table_texture(GL_TEXTURE_2D_ARRAY);
   glTextureStorage3D(table_.table.get(), 1, GL_RGBA32F, table.scalars, table.scalars, table.degree + 1);
   glTextureSubImage3D(table_.table.get(), 0, 0, 0, 0, table.scalars, table.scalars, table.degree + 1, GL_RGBA, GL_FLOAT,
@@ -39,9 +37,8 @@ void PreintegrationTextures::upload(const optics::PolynomialTable& table, const 
   table_.bytes = table.bytes();
 }
 
-void PreintegrationTextures::upload(const optics::CylindricalAtlas& atlas, const Limits& limits) {
+void PreintegrationTextures::upload(const optics::CylindricalAtlas& atlas) {
   const int width = atlas.columns * atlas.tile, height = atlas.rows * atlas.tile;
-  require_table_size(std::max(width, height), limits.texture_size);
   table_.table = make_table_texture(GL_TEXTURE_2D);
   glTextureStorage2D(table_.table.get(), 1, GL_RGBA32F, width, height);
   glTextureSubImage2D(table_.table.get(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, atlas.texels.data());
@@ -53,22 +50,21 @@ void PreintegrationTextures::upload(const optics::CylindricalAtlas& atlas, const
   table_.bytes = atlas.bytes();
 }
 
-void PreintegrationTextures::bind(const scene::PreintegrationCache& cache, const Limits& limits) {
+void PreintegrationTextures::bind(const scene::PreintegrationCache& cache) {
   if (number_ != cache.number()) {
-    if (cache.table()) upload(*cache.table(), limits);
-    if (cache.polynomial()) upload(*cache.polynomial(), limits);
-    if (cache.atlas()) upload(*cache.atlas(), limits);
+    if (cache.table()) upload(*cache.table());
+    if (cache.polynomial()) upload(*cache.polynomial());
+    if (cache.atlas()) upload(*cache.atlas());
     number_ = cache.number();
     made_for_.reset();
   }
   bind();
 }
 
-void PreintegrationTextures::make(const optics::PreintegrationSource& source, const RenderSettings& settings,
-                                  const Limits& limits) {
+void PreintegrationTextures::make(const optics::PreintegrationSource& source, const RenderSettings& settings) {
   const Made wanted{settings.integrator, settings.preintegration, source.longest};
   if (made_for_ != wanted) {
-    table_ = maker_.make(source, settings, limits);
+    table_ = maker_.make(source, settings);
     made_for_ = wanted;
     number_ = 0;
   }

@@ -15,19 +15,18 @@ namespace tetravox::gl {
 /// One table at a time. With the context current.
 class PreintegrationTextures {
  public:
-  /// Puts the cache's table there where it is not yet, and binds it. @throws Error (kUnsupported) where the device
-  /// cannot hold it.
-  void bind(const scene::PreintegrationCache& cache, const Limits& limits);
+  /// Puts the cache's table there where it is not yet, and binds it. Sizes: see `require_table_size`.
+  void bind(const scene::PreintegrationCache& cache);
   /// Makes the table on the device, where it is not at hand, and binds it.
-  void make(const optics::PreintegrationSource& source, const RenderSettings& settings, const Limits& limits);
+  void make(const optics::PreintegrationSource& source, const RenderSettings& settings);
   /// The function has changed.
   void invalidate() { made_for_.reset(); }
   std::uint64_t bytes() const { return table_.bytes + block_.bytes() + maker_.bytes(); }
 
  private:
-  void upload(const optics::PreintegrationTable& table, const Limits& limits);
-  void upload(const optics::PolynomialTable& table, const Limits& limits);
-  void upload(const optics::CylindricalAtlas& atlas, const Limits& limits);
+  void upload(const optics::PreintegrationTable& table);
+  void upload(const optics::PolynomialTable& table);
+  void upload(const optics::CylindricalAtlas& atlas);
   void bind();
 
   /// What a table of the device was made for.

@@ -73,7 +73,7 @@ void SegmentLists::sort(const ListFrame& frame, int rows) {
 
 void SegmentLists::composite(const ListFrame& frame, int rows) {
   ProjectionBlock block = frame.block;
-  block.segments_a_pass = pieces_a_pass(frame.settings);
+  block.segments_a_pass = pieces_a_pass(frame.integrator);
   for (block.is_first_pass = 1;; block.is_first_pass = 0) {
     counters_.clear_to_zero(sizeof(Counters));
     frame.passes.set(block);
@@ -92,13 +92,12 @@ std::uint64_t SegmentLists::resolve(const ListFrame& frame) {
   const std::uint64_t room = std::min(kMostBytes, frame.limits.storage_bytes) / kNodeBytes;
   nodes_.reserve(room * kNodeBytes);
   counters_.reserve(sizeof(Counters));
-  heads_.reserve(static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height) *
-                 sizeof(std::uint32_t));
+  int rows = rows_of(settings, sizeof(std::uint32_t), frame.limits);
+  heads_.reserve(static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(rows) * sizeof(std::uint32_t));
   ListFrame band = frame;
   band.block.node_count = static_cast<uint>(room);
   const Enabled scissor(GL_SCISSOR_TEST);
   std::uint64_t segments = 0;
-  int rows = settings.height;
   for (int begin = 0; begin < settings.height;) {
     support::throw_if_cancelled(frame.progress);
     const int end = std::min(settings.height, begin + rows);

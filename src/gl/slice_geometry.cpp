@@ -319,6 +319,21 @@ SlabFamily make_slabs(const scene::GridView& view, const SlicingRequest& request
   return family;
 }
 
+double longest_slab(const scene::GridView& view, const SlicingRequest& request, const SlabFamily& family) {
+  if (family.are_shells) return family.step;  // rays from their middle
+  const scene::CameraFrame& camera = view.camera;
+  const Point& normal = family.plane.normal;
+  double least = std::abs(normal[2]);
+  if (!camera.is_orthographic) {
+    // Of rays (x, y, 1): linear over the picture, with extremes in its corners.
+    const double across = 0.5 * camera.pixel_step * camera.width * std::abs(normal[0]) +
+                          0.5 * camera.pixel_step * camera.height * std::abs(normal[1]);
+    const double slope = widest_slope(camera);
+    least = std::max(std::abs(normal[2]) - across, 0.0) / std::sqrt(1.0 + slope * slope);
+  }
+  return least * request.diagonal > family.step ? family.step / least : request.diagonal;
+}
+
 SliceTriangles make_triangles(const scene::GridView& view, const SlicingRequest& request, const SlabFamily& family,
                               bool is_in_order_of_t) {
   SliceTriangles triangles;

@@ -72,6 +72,9 @@ SlabFamily make_slabs(const scene::GridView& view, const SlicingRequest& request
 /// Slabs across a direction (unit vector of the camera frame).
 SlabFamily make_slabs_across(const scene::GridView& view, const SlicingRequest& request, const Point& direction);
 
+/// The longest way of a ray through a slab, at most the diagonal of the box; local length.
+double longest_slab(const scene::GridView& view, const SlicingRequest& request, const SlabFamily& family);
+
 /// A corner of a triangle. `slab`: number of its slab; `stripe`: of the layer between two textures, or 0.
 struct SliceVertex {
   std::array<float, 2> position{};  ///< pixels, rows count downwards

@@ -79,7 +79,7 @@ void SliceLight::pass(GLuint program, int slab) {
   glBindTextureUnit(kBehindUnit, 0);
   glBindFramebuffer(GL_FRAMEBUFFER, targets_[1 - before].get());
   glViewport(0, 0, resolution_, resolution_);
-  glDisable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ZERO);
   glUseProgram(program);
   glUniform1i(0, slab);
   glDrawArrays(GL_TRIANGLES, 0, 3);

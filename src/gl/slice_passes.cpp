@@ -22,16 +22,10 @@ FramebufferName make_framebuffer() {
 }
 
 /// What is drawn goes behind what is there; alpha is opacity.
-void blend_behind() {
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
-}
+void blend_behind() { glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE); }
 
 /// What is drawn goes before what is there.
-void blend_before() {
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-}
+void blend_before() { glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA); }
 
 void draw_range(const SlabRange& range, std::size_t first, int instances = 1) {
   if (range.count == 0) return;
@@ -87,13 +81,15 @@ SlicePasses::Plan SlicePasses::make_plan(const SliceFrame& frame) const {
   Plan plan;
   plan.request = request_of(frame.grid, frame.grid_frame, frame.view, frame.settings);
   plan.variant = variant_of(frame.grid, frame.settings);
-  if (plan.variant.classification == SliceClassification::kSegment)
-    plan.integrator = frame.tables.shader(frame.settings);
   if (plan.variant.is_half_angle)
     plan.family =
         make_slabs_across(frame.view, plan.request, half_way(way_of_light(frame.view, frame.settings.lighting)));
   else
     plan.family = make_slabs(frame.view, plan.request);
+  const double longest = frame.view.world_per_local * longest_slab(frame.view, plan.request, plan.family);
+  frame.tables.bind(frame.settings, {longest, filters_slices(frame.settings)}, frame.context.limits(), frame.progress);
+  if (plan.variant.classification == SliceClassification::kSegment)
+    plan.integrator = frame.tables.shader(frame.settings);
   plan.slabs = make_triangles(frame.view, plan.request, plan.family, plan.variant.is_half_angle);
   if (plan.variant.field == SliceField::kPictures)
     plan.slices = make_slice_triangles(frame.view, plan.request, plan.family);
@@ -189,7 +185,6 @@ void SlicePasses::filter_slice(const SliceFrame& frame, const Plan& plan, int sl
   constexpr GLfloat kNothing[4] = {};
   glClearNamedFramebufferfv(slice_targets_[into].get(), GL_COLOR, 0, kNothing);
   glBindFramebuffer(GL_FRAMEBUFFER, slice_targets_[into].get());
-  glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   textures_.kernel_tiles().bind(kTileUnit);
   glUseProgram(find_program("filter", recipe_of_filter()));
@@ -258,12 +253,12 @@ void SlicePasses::draw(const SliceFrame& frame, RenderStatistics& statistics) {
   require_sliceable(frame.grid, frame.settings);
   Plan plan = make_plan(frame);
   prepare(frame, plan);
+  const Enabled blending(GL_BLEND);
   statistics.rays = count_rays(plan);
   if (plan.variant.is_half_angle)
     draw_half_angle(frame, plan);
   else
     draw_slabs(frame, plan);
-  glDisable(GL_BLEND);
   statistics.segments = add_up_queries(plan.slabs.slabs.size());
   statistics.slices = plan.family.count;
 }

@@ -29,13 +29,13 @@ namespace tetravox::gl {
 
 void free_query(GLuint name);
 
-/// One frame: its rays begun, its tables bound.
+/// One frame: its rays begun.
 struct SliceFrame {
   const PreparedGrid& grid;
   const grid::GridFrame& grid_frame;
   const scene::GridView& view;
   const GridTexture& values;
-  const IntegratorTables& tables;
+  IntegratorTables& tables;
   const FrameParts& parts;
   const RenderSettings& settings;
   const Context& context;

@@ -47,12 +47,25 @@ std::vector<float> make_coefficients(const PreparedGrid& grid, const std::array<
     return std::clamp(i > last ? 2 * last - i : i, std::int64_t{0}, last);
   };
   std::vector<float> coefficients;
+  coefficients.reserve(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
+                       static_cast<std::size_t>(size[2]));
   for (std::int64_t k = 0; k < size[2]; ++k)
     for (std::int64_t j = 0; j < size[1]; ++j)
       for (std::int64_t i = 0; i < size[0]; ++i)
         coefficients.push_back(inside[static_cast<std::size_t>(
             (mirrored(k, 2) * whole.count[1] + mirrored(j, 1)) * whole.count[0] + mirrored(i, 0))]);
   return coefficients;
+}
+
+void upload_coefficients(const PreparedGrid& grid, const Context& context, Volume& volume) {
+  const auto values = grid.data.value_dimensions();
+  std::array<int, 3> size{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    size[axis] = static_cast<int>(values[axis]) + 2 * static_cast<int>(kMargin);
+  volume.make(GL_R32F, size, context);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage3D(volume.get(), 0, 0, 0, 0, size[0], size[1], size[2], GL_RED, GL_FLOAT,
+                      make_coefficients(grid, size).data());
 }
 
 }  // namespace
@@ -100,10 +113,10 @@ GLuint SliceTextures::stack(int axis, const GridTexture& values, const Context& 
 const Volume& SliceTextures::gradients(const GridTexture& values, const Context& context) {
   if (gradients_) return *gradients_;
   Volume made;
-  made.make(GL_RGBA16F, values.volume().size(), context);
+  made.make(GL_RGBA32F, values.volume().size(), context);
   if (!gradient_program_) gradient_program_ = make_program(std::vector{recipe_of_gradients()});
   values.volume().bind(kValueUnit);
-  glBindImageTexture(kTargetUnit, made.get(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(kTargetUnit, made.get(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   glUseProgram(gradient_program_.get());
   glUniform1f(0, values.map().scale);
   dispatch_over(made.size());
@@ -115,29 +128,22 @@ const Volume& SliceTextures::gradients(const GridTexture& values, const Context&
 
 void SliceTextures::set_filter(const PreparedGrid& grid, const Filter& filter, const Context& context) {
   if (kernel_ && filter == filter_) return;
-  kernel_ = grid::make_kernel(filter);
-  filter_ = filter;
-  const int radius = kernel_->radius();
+  auto kernel = grid::make_kernel(filter);
+  std::optional<Volume> coefficients;
+  if (kernel->wants_prefilter()) upload_coefficients(grid, context, coefficients.emplace());
+  const int radius = kernel->radius();
   std::vector<std::array<float, 2>> tiles;
   for (int phase = 0; phase <= kPhases; ++phase) {
     const double share = phase / double{kPhases};
-    const std::vector<double> weights = grid::weights_at(*kernel_, share);
+    const std::vector<double> weights = grid::weights_at(*kernel, share);
     for (int tile = 0; tile < 2 * radius; ++tile)
       tiles.push_back({static_cast<float>(weights[static_cast<std::size_t>(tile)]),
-                       static_cast<float>(kernel_->eval_derivative(share - (tile - radius + 1)))});
+                       static_cast<float>(kernel->eval_derivative(share - (tile - radius + 1)))});
   }
   kernel_tiles_.upload(GL_RG32F, tiles.data(), tiles.size() * sizeof(tiles[0]));
-  coefficients_.reset();
-  if (!kernel_->wants_prefilter()) return;
-  const auto values = grid.data.value_dimensions();
-  std::array<int, 3> size{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    size[axis] = static_cast<int>(values[axis]) + 2 * static_cast<int>(kMargin);
-  coefficients_.emplace();
-  coefficients_->make(GL_R32F, size, context);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage3D(coefficients_->get(), 0, 0, 0, 0, size[0], size[1], size[2], GL_RED, GL_FLOAT,
-                      make_coefficients(grid, size).data());
+  coefficients_ = std::move(coefficients);
+  kernel_ = std::move(kernel);
+  filter_ = filter;
 }
 
 std::uint64_t SliceTextures::bytes() const {

@@ -47,7 +47,15 @@ std::vector<std::array<float, 4>> sample_function(const optics::PreintegrationSo
 
 }  // namespace
 
-void require_table_size(int side, int limit) {
+void require_table_size(const RenderSettings& settings, const Limits& limits) {
+  const PreintegrationSettings& table = settings.preintegration;
+  int side = table.scalars, limit = limits.texture_size;
+  if (settings.integrator == Integrator::kTable3d) {
+    side = std::max(table.scalars, table.lengths);
+    limit = limits.volume_size;
+  } else if (settings.integrator == Integrator::kCylindrical) {
+    side = optics::count_atlas_columns(table.planes) * table.tile;  // no fewer than rows
+  }
   if (side > limit)
     throw Error(ErrorCode::kUnsupported, "OpenGL: this device holds tables of at most " + std::to_string(limit) +
                                              " entries a side, and this one has " + std::to_string(side) +
@@ -211,10 +219,11 @@ void TableMaker::make_maps(const optics::PreintegrationSource& source, const Pre
     weights_.bind(kWeightUnit);
     colors_.bind_texture(kOtherUnit);
     glNamedFramebufferDrawBuffers(target_.get(), degree, targets.data());
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE);
-    fill("fit_maps");
-    glDisable(GL_BLEND);
+    {
+      const Enabled blending(GL_BLEND);
+      glBlendFunc(GL_ONE, GL_ONE);
+      fill("fit_maps");
+    }
     for (int i = 1; i < degree; ++i) attach(0, -1, targets[i]);
     glNamedFramebufferDrawBuffer(target_.get(), GL_COLOR_ATTACHMENT0);
     support::throw_if_cancelled(source.progress);
@@ -241,8 +250,7 @@ void TableMaker::make_atlas(DeviceTable& table) {
   table.bytes = static_cast<std::uint64_t>(width_) * static_cast<std::uint64_t>(height_) * 4 * sizeof(float);
 }
 
-DeviceTable TableMaker::make(const optics::PreintegrationSource& source, const RenderSettings& settings,
-                             const Limits& limits) {
+DeviceTable TableMaker::make(const optics::PreintegrationSource& source, const RenderSettings& settings) {
   const PreintegrationSettings& asked = settings.preintegration;
   std::array<GLint, 4> viewport{};
   glGetIntegerv(GL_VIEWPORT, viewport.data());
@@ -250,18 +258,15 @@ DeviceTable TableMaker::make(const optics::PreintegrationSource& source, const R
   table.block = describe_domain(optics::make_segment_domain(source));
   variant_ = settings.integrator == Integrator::kCylindrical ? " atlas" : "";
   if (settings.integrator == Integrator::kTable3d) {
-    require_table_size(std::max(asked.scalars, asked.lengths), limits.volume_size);
     begin(source, asked, asked.scalars, asked.scalars);
     table.table = make_table_texture(GL_TEXTURE_3D);
     make_slices(source, asked, table);
   } else if (settings.integrator == Integrator::kPolynomial) {
-    require_table_size(asked.scalars, limits.texture_size);
     begin(source, asked, asked.scalars, asked.scalars);
     table.table = make_table_texture(GL_TEXTURE_2D_ARRAY);
     make_maps(source, asked, table);
   } else {
     const int columns = optics::count_atlas_columns(asked.planes), rows = (asked.planes + columns - 1) / columns;
-    require_table_size(std::max(columns, rows) * asked.tile, limits.texture_size);
     begin(source, asked, columns * asked.tile, rows * asked.tile);
     maker_.plane_count = asked.planes;
     maker_.tile_size = asked.tile;

@@ -30,8 +30,9 @@ struct DeviceTable {
   std::uint64_t bytes = 0;
 };
 
-/// @throws Error (kUnsupported) where a side has more entries than the device allows.
-void require_table_size(int side, int limit);
+/// @throws Error (kUnsupported) where the table of `settings.integrator` has more entries a side than the device
+/// allows.
+void require_table_size(const RenderSettings& settings, const Limits& limits);
 
 /// What look-ups need of a domain.
 PreintegrationBlock describe_domain(const optics::SegmentDomain& domain);
@@ -45,9 +46,9 @@ std::vector<std::pair<std::string, std::vector<ShaderRecipe>>> recipes_of_tables
 /// Keeps programs and pictures between tables. With the context current.
 class TableMaker {
  public:
-  /// The table of `settings.integrator`: table3d, polynomial or cylindrical.
-  /// @throws Error: kUnsupported where the device cannot hold it; kCancelled.
-  DeviceTable make(const optics::PreintegrationSource& source, const RenderSettings& settings, const Limits& limits);
+  /// The table of `settings.integrator`: table3d, polynomial or cylindrical; see `require_table_size`.
+  /// @throws Error (kCancelled).
+  DeviceTable make(const optics::PreintegrationSource& source, const RenderSettings& settings);
   std::uint64_t bytes() const { return sums_[0].bytes() + sums_[1].bytes() + densities_.bytes() + colors_.bytes(); }
 
  private:

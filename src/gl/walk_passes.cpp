@@ -169,11 +169,10 @@ void WalkPasses::peel_layer(const WalkFrame& frame, const WalkBlock& block) {
   glBindFramebuffer(GL_FRAMEBUFFER, peel_target_.get());
   glClearNamedFramebufferuiv(peel_target_.get(), GL_COLOR, 0, kNoFace);
   glClearNamedFramebufferfv(peel_target_.get(), GL_DEPTH, 0, &kFar);
-  glEnable(GL_DEPTH_TEST);
+  const Enabled depth_test(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glUseProgram(find_program(programs_, "peeling", [] { return recipe_of_peeling(); }).get());
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * block.face_count));
-  glDisable(GL_DEPTH_TEST);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
@@ -184,7 +183,7 @@ std::uint64_t WalkPasses::walk(const WalkFrame& frame, WalkBlock& block, RenderS
   const ProgramName& program =
       find_program(programs_, key, [&] { return std::vector{recipe_of_walk(frame.integrator, frame.variant)}; });
   std::uint64_t entered = 0;
-  block.steps = pieces_a_pass(frame.settings);
+  block.steps = pieces_a_pass(frame.integrator);
   block.is_first_pass = 1;
   for (Counters counters;;) {
     upload(block);
@@ -223,7 +222,7 @@ void WalkPasses::draw_rows(const WalkFrame& frame, RenderStatistics& statistics)
 
 void WalkPasses::draw(const WalkFrame& whole, RenderStatistics& statistics) {
   const int rows = rows_of(whole.settings, kPauseBytes, whole.limits);
-  glEnable(GL_SCISSOR_TEST);
+  const Enabled scissor(GL_SCISSOR_TEST);
   for (int begin = 0; begin < whole.settings.height; begin += rows) {
     WalkFrame part = whole;
     part.row_begin = begin;
@@ -231,7 +230,6 @@ void WalkPasses::draw(const WalkFrame& whole, RenderStatistics& statistics) {
     whole.parts.set_rows(part.row_begin, part.row_end);
     draw_rows(part, statistics);
   }
-  glDisable(GL_SCISSOR_TEST);
 }
 
 std::uint64_t WalkPasses::bytes() const {

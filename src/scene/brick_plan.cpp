@@ -49,6 +49,11 @@ void choose_step(const BrickSummaries& bricks, std::size_t brick, const IsGood& 
   }
 }
 
+bool has_even_axes(const PreparedGrid& grid) {
+  const auto& axes = grid.data.shape.coordinates;
+  return std::all_of(axes.begin(), axes.end(), [](const std::vector<double>& axis) { return axis.empty(); });
+}
+
 class Planner {
  public:
   Planner(const PlanSources& sources, const PlanSettings& settings)
@@ -58,11 +63,8 @@ class Planner {
         allowed_haze_(allowed_haze_of(settings.tolerance, sources.diagonal)),
         has_rate_(settings.samples_per_voxel > 0.0 && !sources.is_constant) {
     const PreparedGrid& grid = *sources.grid;
-    is_even_ = std::all_of(grid.data.shape.coordinates.begin(), grid.data.shape.coordinates.end(),
-                           [](const std::vector<double>& axis) { return axis.empty(); });
-    const bool is_preintegrated =
-        settings.integrator == Integrator::kAntiderivative || settings.integrator == Integrator::kPartial;
-    strides_at_rate_ = has_rate_ && is_preintegrated && is_even_ && grid.missing_values == 0;
+    is_even_ = has_even_axes(grid);
+    strides_at_rate_ = has_rate_ && restarts_rate(grid, settings.integrator);
   }
 
   BrickPlan plan(std::size_t brick) const {
@@ -128,6 +130,11 @@ class Planner {
 };
 
 }  // namespace
+
+bool restarts_rate(const PreparedGrid& grid, Integrator integrator) {
+  const bool is_exact = integrator == Integrator::kAntiderivative || integrator == Integrator::kPartial;
+  return is_exact && has_even_axes(grid) && grid.missing_values == 0;
+}
 
 float allowed_rate_of(double tolerance, double diagonal) {
   return static_cast<float>(kRatePerTolerance * tolerance / diagonal);

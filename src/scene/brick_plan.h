@@ -50,6 +50,10 @@ struct PlanSources {
   IsSeen is_seen;            ///< empty: what `steepness` says
 };
 
+/// Whether steps of a fixed rate may start anew in each brick, where it hardly matters where samples lie: exactly
+/// integrated ones on even axes, with nothing missing. Elsewhere samples are counted on from the eye.
+bool restarts_rate(const PreparedGrid& grid, Integrator integrator);
+
 /// Error in colour for one unit of world length that segments may have.
 float allowed_rate_of(double tolerance, double diagonal);
 

@@ -326,5 +326,34 @@ TEST(GlGrid, SegmentsMayHaveManySamples) {
   }
 }
 
+/// Thousands of control points in a hair of the range, where looking one of them up takes a search.
+TEST(GlGrid, FunctionsMayHaveThousandsOfPoints) {
+  TETRAVOX_REQUIRE_GL();
+  const std::vector<NamedGrid> grids = make_hard_grids();
+  const GridSubject scene(
+      std::find_if(grids.begin(), grids.end(), [](const auto& g) { return g.name == "smooth"; })->grid);
+  const ValueRange range = scene.grid.scalar_range;
+  const double middle = 0.5 * (range.min + range.max), hair = 1e-4 * (range.max - range.min);
+  const double extinction = 3.0 / tests::diagonal_of(scene.grid.bounds);
+  OpticalFunction function;
+  function.points = {{range.min, 0.0, {0, 0, 1}}, {middle - hair, extinction, {0, 1, 0}}};
+  constexpr int kPoints = 3000;
+  for (int i = 0; i < kPoints; ++i)
+    function.points.push_back(
+        {middle - hair + 2 * hair * i / kPoints, extinction * (i % 7) / 6, {1, 0.1 * (i % 5), 0}});
+  function.points.push_back({range.max, extinction, {1, 1, 1}});
+  Pair pair(scene.grid);
+  pair.set_transfer_function(function);
+  for (const Integrator integrator : {Integrator::kPost, Integrator::kPre, Integrator::kAntiderivative})
+    for (const FilterKind filter : {FilterKind::kLinear, FilterKind::kNearest}) {
+      RenderSettings settings = tests::make_settings(integrator, 40, 30);
+      settings.filter = {filter};
+      settings.samples = 40;
+      EXPECT_TRUE(tests::images_agree(pair.gl.render(scene.cameras[0].camera, settings),
+                                      pair.cpu.render(scene.cameras[0].camera, settings), 3e-3, 3e-4))
+          << text_of(settings.filter, integrator, 0.0);
+    }
+}
+
 }  // namespace
 }  // namespace tetravox::conformance

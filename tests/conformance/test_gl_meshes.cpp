@@ -4,6 +4,8 @@
 #include "tests/conformance/scenes.h"
 #include "tetravox/error.h"
 
+#include <atomic>
+
 namespace tetravox::conformance {
 namespace {
 
@@ -163,6 +165,51 @@ TEST(GlMesh, SegmentsMayHaveManySamples) {
   settings.samples = 1000;
   EXPECT_TRUE(tests::images_agree(gl.render(scene.camera("outside"), settings),
                                   cpu.render(scene.camera("outside"), settings), kMostApart, kMostApartRms));
+}
+
+/// Rays along edges pass cells that have no length for them, and passes may end there: they are not stuck.
+TEST(GlMesh, RaysAlongEdgesMayHaveManySamples) {
+  TETRAVOX_REQUIRE_GL();
+  const Subject scene =
+      make_subject(tests::make_box({.bricks = {8, 8, 8}, .lower = {0, 0, 0}, .upper = {8, 8, 8}, .is_hole = {}},
+                                   [](const Vector3& p) { return p[2]; }));
+  Renderer gl = make_gl_renderer(scene.mesh), cpu(scene.mesh);
+  gl.set_transfer_function(scene.function("smooth"));
+  cpu.set_transfer_function(scene.function("smooth"));
+  const Camera along{{4, 4, 30}, {4, 4, 0}, {0, 1, 0}, 30.0, 4.25};
+  RenderSettings settings = tests::make_settings(Integrator::kPost, 17, 17);
+  settings.samples = 4096;
+  RenderStatistics drawn;
+  EXPECT_TRUE(
+      tests::images_agree(gl.render(along, settings, &drawn), cpu.render(along, settings), kMostApart, kMostApartRms));
+  EXPECT_EQ(drawn.stopped_rays, 0u);
+}
+
+/// What a frame has switched on is off again, however it ends.
+TEST(GlMesh, AFrameThatWasCancelledLeavesNothingBehind) {
+  TETRAVOX_REQUIRE_GL();
+  const Subject scene = make_subject("buckyball?cells=20000");
+  const OpticalFunction& function = scene.function("smooth");
+  const std::atomic<bool> cancelled{true};
+  for (const Source source : {Source::kWalk, Source::kProject, Source::kVicp}) {
+    RenderSettings settings = tests::make_settings(Integrator::kTable3d, 60, 45);
+    settings.preintegration.device = TableDevice::kGpu;
+    settings.preintegration.scalars = settings.preintegration.lengths = 32;
+    Renderer renderer = make_gl_renderer(scene.mesh), fresh = make_gl_renderer(scene.mesh);
+    renderer.set_transfer_function(function);
+    fresh.set_transfer_function(function);
+    for (const Source stopped : {Source::kWalk, Source::kProject, Source::kVicp}) {
+      RenderSettings other = tests::make_settings(Integrator::kAntiderivative, 150, 110);
+      other.source = stopped;
+      other.projection.sort = CellSort::kExact;
+      EXPECT_THROW(renderer.render(scene.camera("inside"), other, nullptr, {.report = {}, .cancelled = &cancelled}),
+                   Error);
+    }
+    settings.source = source;
+    EXPECT_TRUE(tests::images_equal(renderer.render(scene.camera("outside"), settings),
+                                    fresh.render(scene.camera("outside"), settings)))
+        << name_of(source);
+  }
 }
 
 TEST(GlMesh, WhatItCannotDrawItRefusesByName) {

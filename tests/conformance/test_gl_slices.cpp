@@ -7,6 +7,7 @@
 #include "tetravox/error.h"
 #include "tetravox/slicing.h"
 
+#include <atomic>
 #include <cmath>
 #include <map>
 
@@ -92,6 +93,62 @@ TEST(GlSlices, AStackIsDrawnTextureByTexture) {
         std::ranges::any_of(dimensions, [&](auto points) { return drawn.slices == static_cast<int>(points) - 1; }));
     const Image expected = cpu.render(camera, cpu_settings(slices_of(SlicingKind::kView3d, 0)));
     EXPECT_LE(tests::compare_images(image, expected).rms, 3e-2) << name;
+  }
+}
+
+/// Tables of ray integrals reach as far as the longest way through a slab.
+TEST(GlSlices, TablesReachThroughThickSlabs) {
+  TETRAVOX_REQUIRE_GL();
+  const GridSubject scene(grid_named("bytes"));
+  Renderer gl = make_gl_renderer(scene.grid);
+  gl.set_transfer_function(scene.function("smooth"));
+  for (const auto& [name, camera] : scene.cameras)
+    for (const SlicingKind kind : kKinds) {
+      RenderSettings settings = slices_of(kind, 6, Integrator::kPartial);
+      settings.slicing.slabs = SlabShape::kLinear;
+      const Image expected = gl.render(camera, settings);
+      for (const Integrator integrator : {Integrator::kTable3d, Integrator::kPolynomial}) {
+        settings.integrator = integrator;
+        settings.preintegration.degree = 4;
+        EXPECT_TRUE(tests::images_agree(gl.render(camera, settings), expected, 1e-2, 2e-3))
+            << name << " " << name_of(kind) << " " << name_of(integrator);
+      }
+    }
+}
+
+/// The value nearest to a place, whichever of the two textures around it holds that.
+TEST(GlSlices, StripesTakeTheNearestValue) {
+  TETRAVOX_REQUIRE_GL();
+  for (const char* name : {"bytes", "cell_data"}) {
+    const GridSubject scene(grid_named(name));
+    Renderer gl = make_gl_renderer(scene.grid), cpu(scene.grid);
+    gl.set_transfer_function(scene.function("smooth"));
+    cpu.set_transfer_function(scene.function("smooth"));
+    RenderSettings settings = slices_of(SlicingKind::kStripes2d, 800);
+    settings.filter = {FilterKind::kNearest};
+    const Camera& camera = scene.camera("outside");
+    EXPECT_LE(tests::compare_images(gl.render(camera, settings), cpu.render(camera, cpu_settings(settings))).rms, 5e-3)
+        << name;
+  }
+}
+
+/// What a frame has switched on is off again, however it ends.
+TEST(GlSlices, AFrameThatWasCancelledLeavesNothingBehind) {
+  TETRAVOX_REQUIRE_GL();
+  const GridSubject scene(grid_named("bytes"));
+  Renderer renderer = make_gl_renderer(scene.grid), fresh = make_gl_renderer(scene.grid);
+  renderer.set_transfer_function(scene.function("smooth"));
+  fresh.set_transfer_function(scene.function("smooth"));
+  const Camera& camera = scene.camera("outside");
+  const std::atomic<bool> cancelled{true};
+  for (const FilterKind filter : {FilterKind::kLinear, FilterKind::kBspline}) {
+    RenderSettings stopped = slices_of(SlicingKind::kView3d, 100);
+    stopped.filter = {filter};
+    EXPECT_THROW(renderer.render(camera, stopped, nullptr, {.report = {}, .cancelled = &cancelled}), Error);
+    RenderSettings settings = tests::make_settings(Integrator::kPolynomial, 48, 36);
+    settings.preintegration.device = TableDevice::kGpu;
+    settings.preintegration.scalars = 64;
+    EXPECT_TRUE(tests::images_equal(renderer.render(camera, settings), fresh.render(camera, settings)));
   }
 }
 

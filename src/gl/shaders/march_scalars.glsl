@@ -128,6 +128,7 @@ void take_cell(GridRay ray, float transmittance, inout Marcher m) {
 
 // The next piece; false where the brick, or the pass, is over.
 bool take_step(GridRay ray, inout Marcher m, inout vec4 sum) {
+  ++work_done;
 #ifndef TAKES_WHOLE_SEGMENTS
   if (!is_pending(m.front)) {
 #endif
@@ -138,7 +139,6 @@ bool take_step(GridRay ray, inout Marcher m, inout vec4 sum) {
     float depth = m.number > 0.0 ? (m.walk.front - m.cell_front) / m.pieces : 0.0;
     Segment segment = Segment(m.scalar_front, m.number > 0.0 ? back : m.cubic.x, depth * ray.world_per_z);
     m.scalar_front = segment.scalar_back;
-    work_done += uint(m.number > 0.0);
 #ifdef TAKES_WHOLE_SEGMENTS
   integrate(segment, m.front, sum);
   return (m.number < m.pieces || m.walk.front < m.walk.leave) && !ends_pass(reached_by(m), m.begun);

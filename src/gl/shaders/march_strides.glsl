@@ -43,12 +43,12 @@ float reached_by(Marcher m) { return m.number < m.steps ? m.z + m.number * m.sha
 
 // The next step; false where the brick, or the pass, is over.
 bool take_step(GridRay ray, inout Marcher m, inout vec4 sum) {
+  ++work_done;
 #ifndef TAKES_WHOLE_SEGMENTS
   if (!is_pending(m.front)) {
 #endif
     m.number += 1.0;
     uint count = uint(m.number > 0.0);
-    work_done += count;
     segment_count += count;
     float back = sample_lattice(m.lattice, m.z + m.number * m.share);
     Segment segment = Segment(m.scalar_front, back, count > 0u ? m.share * ray.world_per_z : 0.0);

@@ -13,7 +13,7 @@ vec3 in_stack(vec3 v) { return slices.stack_axis == 0 ? v.yzx : slices.stack_axi
 float value_at(vec3 place, int layer) {
   ivec3 at = nearest_value(in_stack(place + slices.value_shift), textureSize(stack, 0));
 #ifdef STRIPES
-  at.z = layer;
+  at.z = clamp(at.z, layer, min(layer + 1, textureSize(stack, 0).z - 1));
 #endif
   return stored(texelFetch(stack, at, 0).x);
 }

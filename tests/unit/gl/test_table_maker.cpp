@@ -83,7 +83,7 @@ class TableMakerTest : public ::testing::Test {
     return {function, {0.5, 2.0}, kRange, kLongest};
   }
   DeviceTable make(const OpticalFunction& function, const RenderSettings& settings) {
-    return maker_->make(source_of(function), settings, context_->limits());
+    return maker_->make(source_of(function), settings);
   }
   static std::vector<float> read(const TextureName& texture) {
     std::array<GLint, 3> size{};
@@ -297,7 +297,7 @@ TEST_F(TableMakerTest, RefusesWhatTheDeviceCannotHold) {
   Limits small = context_->limits();
   small.texture_size = small.volume_size = 20;
   for (const Integrator integrator : kTableIntegrators) try {
-      maker_->make(source_of(function), make_settings(integrator, 4), small);
+      require_table_size(make_settings(integrator, 4), small);
       ADD_FAILURE() << name_of(integrator);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::kUnsupported);
@@ -311,7 +311,7 @@ TEST_F(TableMakerTest, StopsWhereItIsTold) {
   optics::PreintegrationSource source = source_of(function);
   source.progress.cancelled = &stop;
   for (const Integrator integrator : {Integrator::kTable3d, Integrator::kPolynomial}) try {
-      maker_->make(source, make_settings(integrator, 4), context_->limits());
+      maker_->make(source, make_settings(integrator, 4));
       ADD_FAILURE() << name_of(integrator);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::kCancelled);

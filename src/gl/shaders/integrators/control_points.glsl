@@ -12,11 +12,26 @@ int guess_interval(float scalar) {
   return texelFetch(first_interval, int(clamp(at, 0.0, float(tables.last_bucket)))).x;
 }
 
-// Extinction and colour at a scalar. One at a control point belongs to the interval that starts there.
+// The interval that holds a scalar, one at a control point that which starts there: by halves, since many may share a
+// bucket.
+int find_interval(float scalar) {
+  int bucket = int(clamp((scalar - tables.points_first) * tables.buckets_per_scalar, 0.0, float(tables.last_bucket)));
+  int low = texelFetch(first_interval, bucket).x;
+  // The next bucket, too: a scalar on the border may be rounded into either.
+  int high = bucket + 2 <= tables.last_bucket ? texelFetch(first_interval, bucket + 2).x : tables.last_interval;
+  while (low < high) {
+    int middle = (low + high + 1) / 2;
+    bool starts_behind = texelFetch(control_points, 3 * middle + 2).x > scalar;
+    low = starts_behind ? low : middle;
+    high = starts_behind ? middle - 1 : high;
+  }
+  return low;
+}
+
+// Extinction and colour at a scalar.
 vec4 eval_optics(float scalar) {
-  int interval = guess_interval(scalar);
+  int interval = find_interval(scalar);
   vec4 place = texelFetch(control_points, 3 * interval + 2);
-  while (place.y <= scalar) place = texelFetch(control_points, 3 * ++interval + 2);
   vec4 front = texelFetch(control_points, 3 * interval), slope = texelFetch(control_points, 3 * interval + 1);
   vec4 optics = front + slope * (scalar - place.z);
   return vec4(max(optics.x, 0.0), optics.yzw);

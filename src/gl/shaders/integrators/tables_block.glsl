@@ -11,6 +11,10 @@ int last_node;
 float points_first;
 float buckets_per_scalar;
 int last_bucket;
+int last_interval;    // between control points
 int samples;          // of post-classification, a segment
 float first_iso;      // stored scalar where iso-values begin (src/optics/iso_value_table.h)
 float isos_per_scalar;
+int unused_0;
+int unused_1;
+int unused_2;
