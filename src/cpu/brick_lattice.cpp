@@ -1,6 +1,7 @@
 #include "src/cpu/brick_lattice.h"
 
 #include "src/grid/summaries.h"
+#include "src/scene/brick_groups.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +13,6 @@ scene::KernelField kernel_field(const LatticeField& field) {
   return {field.reader, field.padding, field.kernel, field.most_parts, field.allowed_rate};
 }
 
-grid::BrickBox box_of(const PreparedGrid& grid, std::uint32_t brick) {
-  const auto& counts = grid.bricks.counts;
-  return grid::box_of_brick(grid.data.shape,
-                            {brick % counts[0], brick / counts[0] % counts[1], brick / counts[0] / counts[1]});
-}
-
 /// Nodes behind the last one that a ray at the very end of the brick may look at.
 std::size_t nodes_beyond(const MarchBrick& brick) {
   const auto row = static_cast<std::size_t>(brick.cells[0]) + 1;
@@ -27,7 +22,8 @@ std::size_t nodes_beyond(const MarchBrick& brick) {
 }  // namespace
 
 void BrickLattice::prefetch(const LatticeField& field, const PreparedGrid& grid, std::uint32_t brick) {
-  const grid::BrickBox box = box_of(grid, brick);
+  if (scene::is_group(grid, brick)) return;
+  const grid::BrickBox box = scene::box_of_drawn(grid, brick);
   grid::Block block{box.first, box.count};
   for (std::int64_t& first : block.first) first += field.padding;
   field.reader->prefetch(block);
@@ -35,7 +31,7 @@ void BrickLattice::prefetch(const LatticeField& field, const PreparedGrid& grid,
 
 MarchBrick BrickLattice::describe(const PreparedGrid& grid, const grid::GridFrame& frame, std::uint32_t index,
                                   int level) {
-  const grid::BrickBox box = box_of(grid, index);
+  const grid::BrickBox box = scene::box_of_drawn(grid, index);
   MarchBrick brick;
   stride_ = std::int64_t{1} << level;
   for (int axis = 0; axis < 3; ++axis) {
@@ -55,7 +51,7 @@ MarchBrick BrickLattice::describe(const PreparedGrid& grid, const grid::GridFram
     }
     place_planes(brick, 1);
   }
-  brick.has_missing = grid.bricks.has_missing[index] != 0;
+  brick.has_missing = !scene::is_group(grid, index) && grid.bricks.has_missing[index] != 0;
   return brick;
 }
 
@@ -88,6 +84,20 @@ int BrickLattice::fill(const LatticeField& field, MarchBrick& brick, int least_p
     brick.records = records_.data();
   }
   return parts;
+}
+
+void BrickLattice::fill_group(const LatticeField& field, MarchBrick& brick) {
+  values_.clear();
+  for (std::int64_t corner = 0; corner < 8; ++corner) {
+    grid::Block at{block_.first, {1, 1, 1}};
+    for (int axis = 0; axis < 3; ++axis) at.first[axis] += (corner >> axis & 1) * block_.count[axis];
+    values_.push_back(0.0f);
+    field.reader->read(at, &values_.back());
+  }
+  block_.count = {2, 2, 2};
+  stride_ = 1;
+  fill_records(*field.kernels, brick);
+  brick.records = records_.data();
 }
 
 /// Planes of an uneven brick whose cells are divided into `parts`.

@@ -35,7 +35,8 @@ struct LatticeField {
 /// Memory of one lattice at a time, used again and again.
 class BrickLattice {
  public:
-  /// Box, cells and flags of a brick whose lattice cells are 2^level cells a side; no values yet.
+  /// Box, cells and flags of a brick (or a group, see scene/brick_groups.h) whose lattice cells are 2^level cells a
+  /// side; no values yet.
   MarchBrick describe(const PreparedGrid& grid, const grid::GridFrame& frame, std::uint32_t brick, int level);
 
   /// Asks for the values of a brick that comes next.
@@ -45,6 +46,9 @@ class BrickLattice {
   /// until the trilinear lattice is as near to the filtered field as `brick.steepness` asks, at most into
   /// `most_parts` along each axis, and at least into `least_parts`. Returns into how many.
   int fill(const LatticeField& field, MarchBrick& brick, int least_parts = 1);
+
+  /// The same for a group that is a single cell: between the values at its corners.
+  void fill_group(const LatticeField& field, MarchBrick& brick);
 
  private:
   void place_planes(MarchBrick& brick, int parts);

@@ -1,6 +1,7 @@
 #include "src/cpu/grid_frame.h"
 
 #include "src/grid/summaries.h"
+#include "src/scene/brick_groups.h"
 #include "src/support/threads.h"
 
 #include <algorithm>
@@ -72,28 +73,47 @@ TileBounds project_box(const grid::BrickBox& box, const grid::GridFrame& frame, 
   return bounds.pixels();
 }
 
-std::array<std::uint32_t, 3> position_of(const PreparedGrid& grid, std::uint32_t brick) {
-  const auto& counts = grid.bricks.counts;
-  return {brick % counts[0], brick / counts[0] % counts[1], brick / counts[0] / counts[1]};
-}
+/// Bricks front to back: by the distance of their group from the eye's, then by their own from the group's nearest.
+class ViewOrder {
+ public:
+  ViewOrder(const PreparedGrid& grid, const std::array<std::int64_t, 3>& nearest) : grid_(grid), nearest_(nearest) {}
 
-/// The bricks front to back: a counting sort by their distance from the eye's, in bricks along the axes.
+  std::size_t place_of(std::uint32_t drawn) const {
+    const std::array<std::uint32_t, 3> at = scene::position_of(grid_, drawn);
+    const bool is_group = scene::is_group(grid_, drawn);
+    std::int64_t groups = 0, bricks = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t group = is_group ? at[axis] : at[axis] / kBricks;
+      groups += std::abs(group - nearest_[axis] / kBricks);
+      if (is_group) continue;
+      const std::int64_t entered = std::clamp(nearest_[axis], group * kBricks, group * kBricks + kBricks - 1);
+      bricks += std::abs(at[axis] - entered);
+    }
+    return static_cast<std::size_t>(groups * kPlaces + bricks);
+  }
+  std::size_t place_count() const {
+    std::size_t groups = 1;
+    for (const std::uint32_t count : grid_.bricks.counts) groups += (count + kBricks - 1) / kBricks;
+    return groups * kPlaces;
+  }
+
+ private:
+  static constexpr std::int64_t kBricks = scene::kGroupBricks;
+  static constexpr std::int64_t kPlaces = 3 * (kBricks - 1) + 1;  // in a group
+
+  const PreparedGrid& grid_;
+  std::array<std::int64_t, 3> nearest_;
+};
+
+/// A counting sort.
 std::vector<std::uint32_t> order_bricks(const PreparedGrid& grid, const grid::GridFrame& frame,
                                         const std::vector<std::uint32_t>& bricks, const scene::GridView& view) {
-  const auto& counts = grid.bricks.counts;
-  const std::array<std::int64_t, 3> nearest = scene::nearest_brick(grid, frame, view);
-  const auto distance = [&](std::uint32_t brick) {
-    const auto at = position_of(grid, brick);
-    std::size_t sum = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      sum += static_cast<std::size_t>(std::abs(static_cast<std::int64_t>(at[axis]) - nearest[axis]));
-    return sum;
-  };
-  std::vector<std::uint32_t> starts(static_cast<std::size_t>(counts[0]) + counts[1] + counts[2] + 1);
-  for (const std::uint32_t brick : bricks) ++starts[distance(brick) + 1];
+  const ViewOrder order(grid, scene::nearest_brick(grid, frame, view));
+  std::vector<std::uint32_t> starts(order.place_count() + 1);
+  for (const std::uint32_t brick : bricks) ++starts[order.place_of(brick) + 1];
   for (std::size_t i = 1; i < starts.size(); ++i) starts[i] += starts[i - 1];
   std::vector<std::uint32_t> ordered(bricks.size());
-  for (const std::uint32_t brick : bricks) ordered[starts[distance(brick)]++] = brick;
+  for (const std::uint32_t brick : bricks) ordered[starts[order.place_of(brick)]++] = brick;
   return ordered;
 }
 
@@ -122,7 +142,7 @@ BrickBins bin_bricks(const PreparedGrid& grid, const grid::GridFrame& frame, con
   std::vector<TileBounds> pixels(ordered.size());
   support::parallel_chunks(ordered.size(), 1 << 10, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      pixels[i] = project_box(grid::box_of_brick(grid.data.shape, position_of(grid, ordered[i])), frame, view);
+      pixels[i] = project_box(scene::box_of_drawn(grid, ordered[i]), frame, view);
   });
   for (const TileBounds& seen : pixels)
     for_each_tile(seen, bins.columns, [&](std::size_t tile, const TileBounds&) { ++bins.starts[tile + 1]; });

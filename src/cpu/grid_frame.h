@@ -16,8 +16,8 @@ namespace tetravox::cpu {
 
 /// A brick with the pixels of a tile that may see it.
 struct BinnedBrick {
-  std::uint32_t brick = 0;
-  TileBounds bounds;  ///< counted from the tile's corner
+  std::uint32_t brick = 0;  ///< or a group, see scene/brick_groups.h
+  TileBounds bounds;        ///< counted from the tile's corner
 };
 
 /// The bricks of each tile, front to back.
@@ -32,8 +32,9 @@ struct BrickBins {
   }
 };
 
-/// Orders `bricks` (indices) front to back and sorts them into tiles. Along any ray from the eye the number of bricks
-/// between a brick and the eye's, counted along the axes and summed, ascends: that number is the order.
+/// Orders `bricks` (numbers as in scene/brick_groups.h) front to back and sorts them into tiles. Along any ray from the
+/// eye the number of groups of bricks between a group and the eye's, counted along the axes and summed, ascends, and so
+/// does that of bricks inside a group: these numbers are the order.
 BrickBins bin_bricks(const PreparedGrid& grid, const grid::GridFrame& frame, const std::vector<std::uint32_t>& bricks,
                      const scene::GridView& view);
 

@@ -162,9 +162,9 @@ class GridRenderer final : public scene::FrameRenderer {
 
   std::uint64_t bytes() const override {
     return antiderivative_.bytes() + control_points_.bytes() + extinction_.bytes() +
-           plans_.size() * sizeof(scene::BrickPlan) + (visible_.size() + field_.coefficients.size()) * sizeof(float) +
-           frame_bytes_ + centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() +
-           preintegration_.bytes();
+           (plans_.size() + group_plans_.size()) * sizeof(scene::BrickPlan) +
+           (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_ +
+           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() + preintegration_.bytes();
   }
 
   std::vector<Source> sources() const override { return {Source::kMarch}; }
@@ -214,7 +214,8 @@ class GridRenderer final : public scene::FrameRenderer {
   scene::PreintegrationCache preintegration_;
   bool is_planned_ = false;
   scene::PlanSettings planned_for_;
-  std::vector<scene::BrickPlan> plans_;
+  scene::BrickGroups groups_;
+  std::vector<scene::BrickPlan> plans_, group_plans_;
   std::vector<std::uint32_t> visible_;
   std::uint64_t frame_bytes_ = 0;
 };
@@ -306,6 +307,7 @@ void GridRenderer::prepare_filter(const RenderSettings& settings) {
   is_planned_ = false;
   scene::FilteredField field = scene::make_filtered_field(grid_, settings.filter);
   field_ = std::move(field);
+  groups_ = {};
   frame_ = grid::make_grid_frame(drawn().data.shape);
 }
 
@@ -321,7 +323,8 @@ scene::PlanSources GridRenderer::plan_sources(const RenderSettings& settings) co
   return {&drawn(),         &field_,
           &steepness_,      1.0f / antiderivative_.nodes_per_scalar,
           diagonal(),       is_constant(settings),
-          domain_.is_set(), {}};
+          domain_.is_set(), {},
+          &groups_};
 }
 
 scene::PlanSettings GridRenderer::plan_settings(const RenderSettings& settings) const {
@@ -339,10 +342,10 @@ void GridRenderer::plan(const RenderSettings& settings) {
   if (is_planned_ && wanted == planned_for_) return;
   scene::PlanSources sources = plan_sources(settings);
   if (domain_.domain().is_table()) sources.is_seen = domain_.find_seen();
-  plans_ = scene::plan_bricks(sources, wanted);
-  visible_.clear();
-  for (std::size_t i = 0; i < plans_.size(); ++i)
-    if (plans_[i].level != scene::BrickPlan::kTransparent) visible_.push_back(static_cast<std::uint32_t>(i));
+  if (groups_.count() == 0) groups_ = scene::make_brick_groups(drawn(), field_);
+  group_plans_ = scene::plan_groups(sources, wanted);
+  plans_ = scene::plan_bricks(sources, wanted, group_plans_);
+  visible_ = scene::list_drawn(sources, group_plans_, plans_);
   planned_for_ = wanted;
   is_planned_ = true;
 }
@@ -371,7 +374,8 @@ void GridRenderer::fill_lattices(const FrameParts& frame, std::uint32_t index, W
 /// Takes the rays of the workspace through a brick; returns how many segments they had.
 std::uint64_t GridRenderer::draw_brick(const FrameParts& frame, const TilePlace& place, const BinnedBrick& binned,
                                        Workspace& workspace) const {
-  const scene::BrickPlan& plan = plans_[binned.brick];
+  const scene::BrickPlan& plan =
+      binned.brick < plans_.size() ? plans_[binned.brick] : group_plans_[binned.brick - plans_.size()];
   MarchBrick brick = workspace.lattices.value.describe(drawn(), frame_, binned.brick, plan.level);
   brick.bounds = binned.bounds;
   MarchJob job = frame.job;

@@ -3,6 +3,7 @@
 namespace tetravox::cpu {
 
 void fill_planned(const PlannedGrid& grid, std::uint32_t index, BrickLattice& lattice, MarchBrick& brick) {
+  if (scene::is_group(*grid.sources.grid, index)) return lattice.fill_group(grid.field, brick);
   const ValueRange range = range_of(grid.sources, index);
   brick.steepness =
       grid.sources.steepness->largest_steepness(static_cast<float>(range.min), static_cast<float>(range.max));

@@ -54,6 +54,17 @@ bool has_even_axes(const PreparedGrid& grid) {
   return std::all_of(axes.begin(), axes.end(), [](const std::vector<double>& axis) { return axis.empty(); });
 }
 
+/// Calls `visit(brick)` for the bricks of a group.
+template <class Visit>
+void for_each_brick(const PlanSources& sources, std::size_t group, const Visit& visit) {
+  const auto& counts = sources.grid->bricks.counts;
+  const BrickSpan span = bricks_of_group(*sources.grid, *sources.groups, group);
+  for (std::uint32_t k = span.first[2]; k < span.end[2]; ++k)
+    for (std::uint32_t j = span.first[1]; j < span.end[1]; ++j)
+      for (std::uint32_t i = span.first[0]; i < span.end[0]; ++i)
+        visit((static_cast<std::size_t>(k) * counts[1] + j) * counts[0] + i);
+}
+
 class Planner {
  public:
   Planner(const PlanSources& sources, const PlanSettings& settings)
@@ -72,17 +83,14 @@ class Planner {
     const auto min = static_cast<float>(range.min), max = static_cast<float>(range.max);
     BrickPlan plan;
     if (!(min <= max)) return plan;
-    // Samples that are counted on from the eye go through everything.
-    const bool counts_samples = has_rate_ && !strides_at_rate_;
-    const bool absorbs = sources_.is_seen ? sources_.is_seen(brick, range)
-                                          : sources_.steepness->largest_extinction(min, max) > allowed_haze_;
-    if (!counts_samples && !absorbs && !has_surface(min, max)) return plan;
+    const bool absorbs = sources_.is_seen ? sources_.is_seen(brick, range) : is_absorbing(min, max);
+    if (!counts_samples() && !absorbs && !has_surface(min, max)) return plan;
     plan.level = 0;
     if (sources_.is_by_cells) {
       plan.is_curved = true;
       return plan;
     }
-    if (sources_.is_constant || counts_samples || settings_.integrator == Integrator::kPre) return plan;
+    if (sources_.is_constant || counts_samples() || settings_.integrator == Integrator::kPre) return plan;
 
     const float steepness = sources_.steepness->largest_steepness(min, max);
     const auto is_good = [&](float deviation, float times = 1.0f) {
@@ -115,7 +123,35 @@ class Planner {
     return plan;
   }
 
+  BrickPlan plan_group(std::size_t group) const {
+    const BrickGroups& groups = *sources_.groups;
+    const float min = groups.min[group], max = groups.max[group];
+    BrickPlan plan;
+    if (!(min <= max)) return plan;
+    const bool may_be_seen = sources_.is_seen || counts_samples() || is_absorbing(min, max) || has_surface(min, max);
+    if (!may_be_seen) return plan;
+    plan.level = 0;
+    const bool is_preintegrated =
+        settings_.integrator == Integrator::kAntiderivative || settings_.integrator == Integrator::kPartial;
+    const bool may_be_merged = is_preintegrated && is_even_ && !has_rate_ && !settings_.wants_gradients &&
+                               !sources_.is_constant && !sources_.is_by_cells && !sources_.field->kernel;
+    if (!may_be_merged || groups.has_missing[group] != 0 || has_surface(min, max)) return plan;
+    const float steepness = sources_.steepness->largest_steepness(min, max);
+    const auto is_good = [&](float deviation) { return steepness == 0.0f || deviation * steepness <= allowed_rate_; };
+    // The field is no farther from any chord between two of its values than these are apart.
+    if (!is_good(max - min)) return plan;
+    plan.level = BrickPlan::kWholeGroup;
+    plan.stride = 1;
+    plan.is_gentle = is_good(kRounding * sources_.node_width);
+    return plan;
+  }
+
  private:
+  /// Whether samples are counted on from the eye: these go through everything.
+  bool counts_samples() const { return has_rate_ && !strides_at_rate_; }
+  bool is_absorbing(float min, float max) const {
+    return sources_.steepness->largest_extinction(min, max) > allowed_haze_;
+  }
   bool has_surface(float min, float max) const {
     const auto& values = settings_.surface_values;
     const auto first = std::lower_bound(values.begin(), values.end(), min);
@@ -151,13 +187,45 @@ ValueRange range_of(const PlanSources& sources, std::size_t brick) {
   return {sources.grid->bricks.min[brick], sources.grid->bricks.max[brick]};
 }
 
-std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSettings& settings) {
+std::vector<BrickPlan> plan_groups(const PlanSources& sources, const PlanSettings& settings) {
+  const Planner planner(sources, settings);
+  std::vector<BrickPlan> plans(sources.groups->count());
+  for (std::size_t i = 0; i < plans.size(); ++i) plans[i] = planner.plan_group(i);
+  return plans;
+}
+
+std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSettings& settings,
+                                   std::span<const BrickPlan> of_groups) {
   const Planner planner(sources, settings);
   std::vector<BrickPlan> plans(sources.grid->bricks.count());
-  support::parallel_chunks(plans.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) plans[i] = planner.plan(i);
+  if (of_groups.empty()) {
+    support::parallel_chunks(plans.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) plans[i] = planner.plan(i);
+    });
+    return plans;
+  }
+  support::parallel_chunks(of_groups.size(), 1 << 6, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t group = begin; group < end; ++group)
+      if (of_groups[group].level != BrickPlan::kTransparent)
+        for_each_brick(sources, group, [&](std::size_t i) { plans[i] = planner.plan(i); });
   });
   return plans;
+}
+
+std::vector<std::uint32_t> list_drawn(const PlanSources& sources, std::span<const BrickPlan> of_groups,
+                                      std::span<const BrickPlan> of_bricks) {
+  std::vector<std::uint32_t> drawn;
+  for (std::size_t group = 0; group < of_groups.size(); ++group) {
+    if (of_groups[group].level == BrickPlan::kTransparent) continue;
+    if (of_groups[group].level == BrickPlan::kWholeGroup) {
+      drawn.push_back(static_cast<std::uint32_t>(of_bricks.size() + group));
+      continue;
+    }
+    for_each_brick(sources, group, [&](std::size_t i) {
+      if (of_bricks[i].level != BrickPlan::kTransparent) drawn.push_back(static_cast<std::uint32_t>(i));
+    });
+  }
+  return drawn;
 }
 
 }  // namespace tetravox::scene

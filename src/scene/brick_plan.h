@@ -3,6 +3,7 @@
 /// How each brick of a grid is drawn, before a ray has entered it.
 
 #include "src/optics/steepness_table.h"
+#include "src/scene/brick_groups.h"
 #include "src/scene/filtered_field.h"
 #include "tetravox/grid.h"
 #include "tetravox/render.h"
@@ -10,12 +11,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace tetravox::scene {
 
 struct BrickPlan {
   static constexpr std::uint8_t kTransparent = 0xFF;
+
+  static constexpr std::uint8_t kWholeGroup = 5;  ///< level of a group that is a single cell
 
   std::uint8_t level = kTransparent;  ///< lattice cells of 2^level cells a side
   std::uint8_t stride = 0;            ///< lattice cells a step; 0: from cell to cell
@@ -48,6 +52,7 @@ struct PlanSources {
   bool is_constant = false;  ///< whether the scalar is constant in each cell
   bool is_by_cells = false;  ///< whether rays go from cell to cell in any case
   IsSeen is_seen;            ///< empty: what `steepness` says
+  const BrickGroups* groups = nullptr;
 };
 
 /// Whether steps of a fixed rate may start anew in each brick, where it hardly matters where samples lie: exactly
@@ -66,7 +71,17 @@ float allowed_haze_of(double tolerance, double diagonal);
 /// Range of the field in a brick; min > max where it is missing throughout.
 ValueRange range_of(const PlanSources& sources, std::size_t brick);
 
-/// One plan a brick. Microseconds for a thousand bricks, on all cores.
-std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSettings& settings);
+/// One plan a group (`sources.groups`): transparent; or a single lattice cell, where the function cannot tell what is
+/// in it from a trilinear field; otherwise level 0: brick by brick.
+std::vector<BrickPlan> plan_groups(const PlanSources& sources, const PlanSettings& settings);
+
+/// One plan a brick. Where there are plans of groups, the bricks of those that are transparent are not looked at.
+/// Microseconds for a thousand bricks, on all cores.
+std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSettings& settings,
+                                   std::span<const BrickPlan> of_groups = {});
+
+/// What is to be drawn, numbered as in brick_groups.h: groups that are single cells, and other bricks that are seen.
+std::vector<std::uint32_t> list_drawn(const PlanSources& sources, std::span<const BrickPlan> of_groups,
+                                      std::span<const BrickPlan> of_bricks);
 
 }  // namespace tetravox::scene

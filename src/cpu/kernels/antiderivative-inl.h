@@ -47,6 +47,20 @@ class AntiderivativeIntegrator {
     }
   }
 
+  /// Vector by vector: a structure of this size would go through a call of memcpy, whose wider loads wait for what has
+  /// just been stored.
+  static HWY_INLINE void move_front(const Front& from, Front& to) {
+    to.position = from.position;
+    to.sums[0] = from.sums[0];
+    to.sums[1] = from.sums[1];
+    to.sums[2] = from.sums[2];
+    to.sums[3] = from.sums[3];
+    to.densities[0] = from.densities[0];
+    to.densities[1] = from.densities[1];
+    to.densities[2] = from.densities[2];
+    to.densities[3] = from.densities[3];
+  }
+
   HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
     const Point back = point_at(position(segment.scalar_back));
     Float integrals[4];
@@ -59,7 +73,7 @@ class AntiderivativeIntegrator {
       composite_piece(integrals[0], integrals + 1, absorbed_ratio_series(integrals[0]), sum);
     else
       integrate_doubtful(segment, front, back, integrals, doubtful, coarse, sum);
-    front = back;
+    move_front(back, front);
   }
 
   // ---- for the gentle variant below ----
@@ -68,8 +82,9 @@ class AntiderivativeIntegrator {
   /// middle.
   HWY_NOINLINE void integrate_flat(Float middle, Float length, Mask lanes, Float integrals[4]) const {
     const Float clamped = inside(middle);
-    const Int node = hn::Min(hn::ConvertTo(kInt, clamped), hn::Set(kInt, table_.last_node - 1));
-    const Float f = hn::Sub(clamped, hn::ConvertTo(kFloat, node));
+    const Float low_node = hn::Min(hn::Floor(clamped), hn::Sub(last_position(), constant(1.0f)));
+    const Int node = nearest_small_int(low_node);
+    const Float f = hn::Sub(clamped, low_node);
     const Uint record = hn::BitCast(kUint, hn::Add(node, node));
     const Record low = load_table_records(entries_->densities.data(), record);
     const Record high = load_table_records((entries_ + 1)->densities.data(), record);
@@ -133,8 +148,9 @@ class AntiderivativeIntegrator {
  private:
   HWY_INLINE Point point_at(Float at) const {
     const Float clamped = inside(at);
-    const Int node = hn::Min(hn::ConvertTo(kInt, clamped), hn::Set(kInt, table_.last_node - 1));
-    const Float f = hn::Sub(clamped, hn::ConvertTo(kFloat, node));
+    const Float low_node = hn::Min(hn::Floor(clamped), hn::Sub(last_position(), constant(1.0f)));
+    const Int node = nearest_small_int(low_node);
+    const Float f = hn::Sub(clamped, low_node);
     const Float half_f = hn::Mul(constant(0.5f), f);
     // A node's densities follow its sums; those of the next node end the line from it.
     const Uint record = hn::BitCast(kUint, hn::Add(node, node));
@@ -193,7 +209,7 @@ class AntiderivativeIntegrator {
     }
   }
 
-  HWY_INLINE Int node_at(Float at) const { return hn::ConvertTo(kInt, inside(at)); }
+  HWY_INLINE Int node_at(Float at) const { return nearest_small_int(hn::Floor(inside(at))); }
 
   /// Whether the table is too coarse at a position: a segment that ends there is left to the control points. One that
   /// only passes over such a place is not: the antiderivatives are exact at all nodes.
@@ -301,6 +317,16 @@ class GentleAntiderivativeIntegrator {
     for (int i = 0; i < 4; ++i) to.sums[i] = hn::IfThenElse(int_mask(mask), from.sums[i], to.sums[i]);
   }
 
+  /// See above.
+  static HWY_INLINE void move_front(const Front& from, Front& to) {
+    to.position = from.position;
+    to.node = from.node;
+    to.sums[0] = from.sums[0];
+    to.sums[1] = from.sums[1];
+    to.sums[2] = from.sums[2];
+    to.sums[3] = from.sums[3];
+  }
+
   HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
     const Front back = front_at(segment.scalar_back);
     const Float nodes = hn::ConvertTo(kFloat, hn::Sub(back.node, front.node));
@@ -324,14 +350,14 @@ class GentleAntiderivativeIntegrator {
       precise_.integrate_doubtful(segment, precise_.front_at(segment.scalar_front),
                                   precise_.front_at(segment.scalar_back), integrals, doubtful, hn::FirstN(kFloat, 0),
                                   sum);
-    front = back;
+    move_front(back, front);
   }
 
  private:
   static constexpr float kFlatNodes = optics::AntiderivativeTable::kFlatNodes;
 
   HWY_INLINE Front front_of(Float position) const {
-    const Int node = hn::NearestInt(position);
+    const Int node = nearest_small_int(position);
     const Record record =
         load_table_records(table_.entries.data()->sums.data(), hn::BitCast(kUint, hn::Add(node, node)));
     return {position,

@@ -88,13 +88,13 @@ class LatticeSampler {
   HWY_INLINE void find_cell(const Float at[3], Float cell[3], Float t[3]) const {
     for (int axis = 0; axis < 3; ++axis) {
       const Float inside = hn::Min(hn::Max(at[axis], constant(0.0f)), constant(last_cell_[axis]));
-      cell[axis] = hn::ConvertTo(kFloat, hn::ConvertTo(kInt, inside));
+      cell[axis] = hn::Floor(inside);
       t[axis] = hn::Sub(at[axis], cell[axis]);
     }
   }
   static HWY_INLINE Uint number_of(const Float cell[3], float row, float layer) {
     const Float index = multiply_add(cell[2], constant(layer), multiply_add(cell[1], constant(row), cell[0]));
-    return hn::BitCast(kUint, hn::ConvertTo(kInt, index));
+    return hn::BitCast(kUint, nearest_small_int(index));
   }
 
   const float* records_;

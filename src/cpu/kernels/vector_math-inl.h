@@ -93,6 +93,13 @@ HWY_INLINE Record load_table_records(const void* records, Uint index) {
   return transpose_records([&](std::size_t i) { return reinterpret_cast<const float*>(base + offset[i]); });
 }
 
+/// The integer nearest to x (ties to even), for 0 <= x < 2^22: the sum has it in its lowest bits. What converts any
+/// float has cases to tell apart that cannot occur here.
+HWY_INLINE Int nearest_small_int(Float x) {
+  constexpr float kTwoTo23 = 8388608.0f;
+  return hn::Sub(hn::BitCast(kInt, hn::Add(x, constant(kTwoTo23))), hn::BitCast(kInt, constant(kTwoTo23)));
+}
+
 /// (1 - exp(-x)) / x for 0 <= x <= 1/4, to 2e-6: the series.
 HWY_INLINE Float absorbed_ratio_series(Float x) {
   Float sum = constant(1.0f / 120.0f);
