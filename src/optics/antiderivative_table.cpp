@@ -150,6 +150,11 @@ class BinIntegrals {
   /// Density where the last interval ended; at a step, beyond it.
   Density density() const { return eval_piece(pieces_[piece_], begin_); }
 
+  /// How far the function does not change from where the last interval ended on.
+  double constant_until() const {
+    return pieces_[piece_].slopes == Density{} ? pieces_[piece_].end : -std::numeric_limits<double>::infinity();
+  }
+
  private:
   std::vector<Piece> pieces_;
   std::size_t piece_ = 0;
@@ -204,6 +209,7 @@ void fill_nodes(const OpticalFunction& function, const ValueRange& covered, doub
   ColorVariation variation;
   Density density = bins.density(), sum{};
   const double sum_scale = 1.0 / (unit * width);
+  bool is_constant = false;
   for (std::int32_t i = 0; i <= count; ++i) {
     AntiderivativeTable::Node& node = table.entries[i];
     table.color_variation[i] = variation.total();
@@ -212,13 +218,18 @@ void fill_nodes(const OpticalFunction& function, const ValueRange& covered, doub
       node.densities[channel] = static_cast<float>(density[channel]);
     }
     if (i == count) break;
-    const Density bin = bins.next(covered.min + width * (i + 1)), next = bins.density();
+    const double end = covered.min + width * (i + 1);
+    const bool was_constant = is_constant;
+    is_constant = end < bins.constant_until();
+    const Density bin = bins.next(end);
+    for (int channel = 0; channel < 4; ++channel) sum[channel] += sum_scale * bin[channel];
+    // Beyond the ends of the function, often half of the nodes, no colour changes and no line is off.
+    if (is_constant && was_constant) continue;
     variation.add(bin);
+    const Density next = bins.density();
     double error = 0.0;
-    for (int channel = 0; channel < 4; ++channel) {
-      sum[channel] += sum_scale * bin[channel];
+    for (int channel = 0; channel < 4; ++channel)
       error = std::max(error, std::abs(bin[channel] / width - 0.5 * (density[channel] + next[channel])));
-    }
     if (error * visible_length(std::min(density[0], next[0]), longest) > kCoarseError) table.is_coarse[i] = 1;
     density = next;
   }

@@ -46,8 +46,8 @@ struct AntiderivativeTable {
   std::vector<std::int32_t> is_coarse;
   std::vector<std::int32_t> coarse_before;  ///< [last_node + 2]: how many of the nodes below are marked so
   bool has_coarse = false;                  ///< whether any is
-  /// Whether scalars may be rounded to nodes, and segments no longer than kFlatNodes read one density, without the
-  /// picture changing by more than `kGentleError`.
+  /// Whether scalars may be rounded to nodes, and the densities of flat segments be taken from up to half of kFlatNodes
+  /// away, without the picture changing by more than `kGentleError`.
   bool is_gentle = false;
   static constexpr std::int32_t kFlatNodes = 4;
   static constexpr double kGentleError = 1e-3;

@@ -94,7 +94,7 @@ class LatticeSampler {
   }
   static HWY_INLINE Uint number_of(const Float cell[3], float row, float layer) {
     const Float index = multiply_add(cell[2], constant(layer), multiply_add(cell[1], constant(row), cell[0]));
-    return hn::BitCast(kUint, nearest_small_int(index));
+    return hn::BitCast(kUint, round_small(index));
   }
 
   const float* records_;

@@ -42,6 +42,13 @@ HWY_INLINE Float constant(float value) { return hn::Set(kFloat, value); }
 /// Multiply, then add, each rounded: never fused, so that all instruction sets agree to the bit.
 HWY_INLINE Float multiply_add(Float a, Float b, Float c) { return hn::Add(hn::Mul(a, b), c); }
 
+/// The integer nearest to 0 <= x < 2^22, ties to even: the lowest bits of a sum. `hn::NearestInt` looks after larger
+/// numbers, too, in twice the instructions.
+HWY_INLINE Int round_small(Float x) {
+  constexpr float kUnit = 8388608.0f;  // 2^23, of which the unit is the last place
+  return hn::Sub(hn::BitCast(kInt, hn::Add(x, constant(kUnit))), hn::BitCast(kInt, constant(kUnit)));
+}
+
 HWY_INLINE Mask float_mask(hn::Mask<UintTag> mask) { return hn::RebindMask(kFloat, mask); }
 HWY_INLINE hn::Mask<UintTag> uint_mask(Mask mask) { return hn::RebindMask(kUint, mask); }
 HWY_INLINE hn::Mask<IntTag> int_mask(Mask mask) { return hn::RebindMask(kInt, mask); }
@@ -91,13 +98,6 @@ HWY_INLINE Record load_table_records(const void* records, Uint index) {
   hn::Store(hn::ShiftLeft<4>(index), kUint, offset);
   const char* base = static_cast<const char*>(records);
   return transpose_records([&](std::size_t i) { return reinterpret_cast<const float*>(base + offset[i]); });
-}
-
-/// The integer nearest to x (ties to even), for 0 <= x < 2^22: the sum has it in its lowest bits. What converts any
-/// float has cases to tell apart that cannot occur here.
-HWY_INLINE Int nearest_small_int(Float x) {
-  constexpr float kTwoTo23 = 8388608.0f;
-  return hn::Sub(hn::BitCast(kInt, hn::Add(x, constant(kTwoTo23))), hn::BitCast(kInt, constant(kTwoTo23)));
 }
 
 /// (1 - exp(-x)) / x for 0 <= x <= 1/4, to 2e-6: the series.

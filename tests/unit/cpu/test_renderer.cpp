@@ -75,6 +75,24 @@ TEST_F(SmallPictures, AgreeBetweenIntegrators) {
   }
 }
 
+TEST_F(SmallPictures, AreRightWhereTheFieldCreepsFromNodeToNode) {
+  // Steep towards the largest value, and all but level elsewhere: in most cells it changes by less than a node.
+  const auto [least, most] = mesh_.scalar_range;
+  for (Vertex& vertex : mesh_.vertices) {
+    const double value = mesh_.scalar_offset + mesh_.scalar_scale * vertex.scalar;
+    const double creeping = least + (most - least) * std::pow(std::max(value - least, 0.0) / (most - least), 12.0);
+    vertex.scalar = static_cast<float>((creeping - mesh_.scalar_offset) / mesh_.scalar_scale);
+  }
+  const OpticalFunction function{
+      {{0.0, 0.5, {0.1, 0.2, 0.9}}, {0.5, 3.0, {0.9, 0.8, 0.2}}, {1.0, 0.5, {1.0, 0.2, 0.1}}}};
+  RenderSettings settings;
+  settings.integrator = Integrator::kPartial;
+  const Image exact = draw(function, settings);
+  settings.integrator = Integrator::kAntiderivative;
+  const Image image = draw(function, settings);
+  for (std::size_t i = 0; i < exact.pixels.size(); ++i) EXPECT_NEAR(image.pixels[i], exact.pixels[i], 5e-4) << i;
+}
+
 TEST_F(SmallPictures, StopWhenCancelled) {
   const std::atomic<bool> cancelled{true};
   Renderer renderer(mesh_);
