@@ -113,6 +113,9 @@ void limit_light_error(const Lighting& lighting, double tolerance, Effects& effe
   // Near its top cos^N is exp(-N x^2 / 2), whose derivatives are largest at these values.
   const double n = lighting.material.shininess, root = std::sqrt(n);
   effects.lit_once = static_cast<float>(24.0 / std::max(diffuse + specular * n, 1e-30));
+  effects.light_change.second = static_cast<float>((diffuse + specular * n) / 8.0);
+  effects.light_change.diffuse = static_cast<float>(brightness * lighting.material.diffuse / allowed / 2.0);
+  effects.light_change.shine = static_cast<float>(brightness / allowed / 2.0);
   effects.light_change.first = static_cast<float>((diffuse + 0.61 * specular * root) / 4.0);
   effects.light_change.third = static_cast<float>((diffuse + 1.38 * specular * n * root) / 24.0);
   effects.light_change.fourth = static_cast<float>((diffuse + 3.0 * specular * n * n) / 480.0);

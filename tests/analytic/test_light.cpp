@@ -43,6 +43,26 @@ TEST_P(Lit, LinearFieldHasTheModelsLight) {
   }
 }
 
+TEST_P(Lit, TheEyesLightShinesByEveryExponent) {
+  const tests::Body body = cube(9, linear_field);
+  const double range = body.scalar_range().max - body.scalar_range().min;
+  RenderSettings settings = make_settings(1e-5);
+  settings.lighting.lights = {Light{}};
+  settings.lighting.material = {0.2, 0.5, 0.8, 1.0};
+  const double half = settings.lighting.gradient_threshold * range / tests::diagonal_of(body.bounds());
+  const double g = norm(kSlope), strength = g * g / (g * g + half * half);
+  for (const double shininess : {1.0, 2.0, 7.0, 7.5, 32.0, 33.0, 256.0, 257.0}) {
+    settings.lighting.material.shininess = shininess;
+    expect_shown(body, kHomogeneous, settings,
+                 [&](const Ray& ray) {
+                   return integrate_lit(ray, intersect_box(ray, kLower, kUpper), kColor, [&](const Vector3& place) {
+                     return illuminate(settings.lighting, ray.direction, place, kSlope, strength);
+                   });
+                 },
+                 {2e-4, 2e-5});
+  }
+}
+
 TEST_P(Lit, EveryGradientMethodFindsALinearFieldsSlope) {
   const tests::Body body = cube(9, linear_field);
   const std::vector<GradientMethod> methods = is_grid() ? std::vector{GradientMethod::kFilter, GradientMethod::kCentral}

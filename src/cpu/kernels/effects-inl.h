@@ -9,12 +9,14 @@
 #endif
 
 #include "src/cpu/kernels/effects.h"
+#include "src/cpu/kernels/followed_light-inl.h"
 #include "src/cpu/kernels/kernels.h"
 #include "src/cpu/kernels/lit_places-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/shading-inl.h"
 #include "src/cpu/kernels/stretches-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
+#include "src/cpu/kernels/volume_pieces-inl.h"
 
 #include <limits>
 #include <type_traits>
@@ -29,22 +31,62 @@ class EffectIntegrator {
  public:
   using Front = typename Base::Front;
   /// Whether the integrator asks stretches for more than the scalar (domain-inl.h).
-  static constexpr bool kIsOfDomain = requires { Base::kIsOfDomain; };
+  static constexpr bool kIsOfDomain = PieceIntegrator<Base>::kIsOfDomain;
 
   explicit EffectIntegrator(const IntegratorTables& tables)
-      : base_(tables),
+      : pieces_(tables),
         effects_(*tables.effects),
         is_light_cut_(effects_.longest_lit > 0.0f || effects_.largest_lit > 0.0f),
-        is_light_all_(!kIsOfDomain && effects_.shading && !is_light_cut_ && !is_weighted() && !effects_.depth &&
+        is_light_all_(!kIsOfDomain && effects_.shading && !is_light_cut_ && !pieces_.is_weighted() && !effects_.depth &&
                       !effects_.record),
+        is_plain_(!kIsOfDomain && !effects_.shading && !pieces_.is_weighted() && !effects_.depth && !effects_.record),
         is_lit_from_eye_(effects_.shading && is_lit_from_eye(*effects_.shading)) {}
 
-  HWY_INLINE Front front_at(Float scalar) const { return base_.front_at(scalar); }
+  HWY_INLINE Front front_at(Float scalar) const { return base().front_at(scalar); }
   static HWY_INLINE void replace_front(Mask mask, const Front& from, Front& to) { Base::replace_front(mask, from, to); }
 
   /// Whether linear stretches without surfaces need light, and nothing else: then `integrate_lit_segment` serves.
   HWY_INLINE bool is_light_all(const Segments& segment) const {
     return is_light_all_ && (HWY_LIKELY(effects_.surfaces.empty()) || !meets_surface(effects_, segment));
+  }
+
+  /// Whether there is nothing but surfaces, and linear stretches meet none: then `integrate` serves.
+  HWY_INLINE bool is_plain(const Segments& segment) const { return is_plain_ && !meets_surface(effects_, segment); }
+  HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
+    if constexpr (!kIsOfDomain) base().integrate(segment, front, sum);
+  }
+
+  /// Whether `integrate_followed_segment` serves where `is_light_all` says that light is all.
+  HWY_INLINE bool is_light_followed() const { return is_light_all_ && is_lit_from_eye_; }
+
+  /// A whole linear stretch, with the light of the eye at its faces. `pass()` finds them, `lose()` says that nobody
+  /// did.
+  template <class Pass, class Lose, class MakeStretch, class MakeRay>
+  HWY_INLINE void integrate_followed_segment(const Segments& segment, const Pass& pass, const Lose& lose,
+                                             const MakeStretch& make_stretch, const MakeRay& make_ray, Front& front,
+                                             Accumulated& sum) const {
+    if constexpr (!kIsOfDomain) {
+      const Float zero = constant(0.0f), half = constant(0.5f);
+      Accumulated part{zero, zero, zero, sum.transmittance};
+      base().integrate(segment, front, part);
+      const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
+      const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
+      if (hn::AllFalse(kFloat, bright)) {
+        lose();
+        add_in_light(part, effects_.usual_light, sum);  // too faint for a normal
+        return;
+      }
+      const FollowedLight& followed = pass();
+      const LitFace &near = followed.front(), &far = followed.back();
+      const Mask uneven = hn::AndNot(is_light_even(effects_, near, far, absorbed), bright);
+      const EyeLight mean{hn::Mul(half, hn::Add(near.light.diffuse, far.light.diffuse)),
+                          hn::Mul(half, hn::Add(near.light.shine, far.light.shine))};
+      Accumulated lit = sum;
+      add_lit(effects_, colored(*effects_.shading, mean), bright, part, lit);
+      if (HWY_UNLIKELY(!hn::AllFalse(kFloat, uneven)))
+        light_uneven(segment, make_stretch(), make_ray(), uneven, part, sum, lit);
+      sum = lit;
+    }
   }
 
   /// A whole linear stretch. It is only made where it needs light.
@@ -54,7 +96,7 @@ class EffectIntegrator {
     if constexpr (!kIsOfDomain) {
       const Float zero = constant(0.0f);
       Accumulated part{zero, zero, zero, sum.transmittance};
-      base_.integrate(segment, front, part);
+      base().integrate(segment, front, part);
       const Float absorbed = hn::Sub(sum.transmittance, part.transmittance);
       const Mask bright = hn::Gt(absorbed, constant(effects_.faint));
       if (hn::AllFalse(kFloat, bright)) {
@@ -64,7 +106,7 @@ class EffectIntegrator {
       const auto stretch = make_stretch();
       const RayView ray = make_ray();
       Float unused = constant(0.0f);
-      const Walk<std::remove_const_t<decltype(stretch)>> walk{stretch, ray, front, sum, unused};
+      const Walk<Front, std::remove_const_t<decltype(stretch)>> walk{stretch, ray, front, sum, unused};
       const Cut begin{zero, segment.scalar_front}, end{constant(1.0f), segment.scalar_back};
       // To the bit what `gather` finds: a ray must not depend on those beside it, which may be cut.
       Emission emission{zero, zero, zero, zero};
@@ -79,7 +121,7 @@ class EffectIntegrator {
   HWY_NOINLINE void integrate_stretch(const Stretch& stretch, const RayView& ray, Float from, Float to, Front& front,
                                       Accumulated& sum, Float& depth) const {
     const Cut begin = cut_at(stretch, from), end = cut_at(stretch, to);
-    const Walk<Stretch> walk{stretch, ray, front, sum, depth};
+    const Walk<Front, Stretch> walk{stretch, ray, front, sum, depth};
     if (HWY_UNLIKELY(meets_surface(effects_, stretch, begin, end)))
       pass_surfaces(walk, begin, end);
     else
@@ -87,22 +129,12 @@ class EffectIntegrator {
   }
 
  private:
-  /// What one call works on.
-  template <class Stretch>
-  struct Walk {
-    const Stretch& stretch;
-    const RayView& ray;
-    Front& front;
-    Accumulated& sum;
-    Float& depth;
-  };
-
   // ---- surfaces ----
 
   /// Draws what lies between two cuts, surfaces and volume in turns. Between its extrema the scalar is monotone, so
   /// that a ray meets surfaces in the order of their values.
   template <class Stretch>
-  HWY_NOINLINE void pass_surfaces(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
+  HWY_NOINLINE void pass_surfaces(const Walk<Front, Stretch>& walk, const Cut& begin, const Cut& end) const {
     const Stretch& stretch = walk.stretch;
     constexpr int kParts = Stretch::kIsLinear ? 1 : 3;
     Cut borders[kParts + 1];
@@ -143,7 +175,7 @@ class EffectIntegrator {
   /// Lays a sheet over what has been gathered, on the lanes of `met`: `up` where the scalar rises along the ray, `down`
   /// where it falls.
   template <class Stretch>
-  HWY_INLINE void composite_surface(const Walk<Stretch>& walk, const Cut& here, Mask met, Mask rising,
+  HWY_INLINE void composite_surface(const Walk<Front, Stretch>& walk, const Cut& here, Mask met, Mask rising,
                                     const SurfaceSheet& up, const SurfaceSheet& down) const {
     const auto opacity_of = [](const SurfaceSheet& sheet, bool is_front) {
       return constant(is_front || sheet.is_two_sided ? sheet.opacity : 0.0f);
@@ -173,9 +205,9 @@ class EffectIntegrator {
   // ---- volume ----
 
   template <class Stretch>
-  HWY_INLINE void integrate_volume(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
+  HWY_INLINE void integrate_volume(const Walk<Front, Stretch>& walk, const Cut& begin, const Cut& end) const {
     if (!effects_.shading)
-      integrate_pieces(walk, begin, end, walk.sum, nullptr);
+      pieces_.integrate(walk, begin, end, walk.sum, nullptr);
     else if (is_light_cut_)
       integrate_lit_parts(walk, begin, end);
     else
@@ -184,14 +216,14 @@ class EffectIntegrator {
 
   /// In parts so short that the light that reaches them is about the same all along.
   template <class Stretch>
-  HWY_NOINLINE void integrate_lit_parts(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
+  HWY_NOINLINE void integrate_lit_parts(const Walk<Front, Stretch>& walk, const Cut& begin, const Cut& end) const {
     constexpr float kMostParts = 256.0f;
     const Float one = constant(1.0f), span = hn::Sub(end.u, begin.u);
     Float wanted = one;
     if (effects_.longest_lit > 0.0f) wanted = count_by_length(walk.stretch, walk.ray, begin, end, effects_.longest_lit);
     if (effects_.largest_lit > 0.0f)
-      wanted =
-          hn::Max(wanted, count_by_opacity(walk.sum.transmittance, pass_unlit(walk, begin, end), effects_.largest_lit));
+      wanted = hn::Max(
+          wanted, count_by_opacity(walk.sum.transmittance, pieces_.pass_unlit(walk, begin, end), effects_.largest_lit));
     const Float parts = hn::IfThenElse(hn::Gt(walk.stretch.length, constant(0.0f)),
                                        hn::Min(hn::Max(wanted, one), constant(kMostParts)), one);
     Cut at = begin;
@@ -205,114 +237,37 @@ class EffectIntegrator {
     }
   }
 
-  /// What comes through from `begin` to `end`.
-  template <class Stretch>
-  HWY_INLINE Float pass_unlit(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
-    const Float zero = constant(0.0f);
-    Accumulated part{zero, zero, zero, walk.sum.transmittance};
-    const Front front = walk.front;
-    const Float depth = walk.depth;
-    integrate_pieces(walk, begin, end, part, nullptr);
-    walk.front = front;
-    walk.depth = depth;
-    return part.transmittance;
-  }
-
-  /// Adds linear pieces to `sum`, and says where they absorb, if that is asked for. What one ray is given does not
-  /// depend on those beside it.
-  template <class Stretch>
-  HWY_NOINLINE void integrate_pieces(const Walk<Stretch>& walk, const Cut& begin, const Cut& end, Accumulated& sum,
-                                     Emission* emission) const {
-    if constexpr (kIsOfDomain) {
-      base_.integrate_stretch(
-          walk.stretch, begin, end, sum, emission,
-          [&](const Cut& a, const Cut& b) { return segment_between(walk.stretch, a, b).length; },
-          [&](const Cut& a, const Cut& b, Float before) { note_piece(walk, a, b, before, sum.transmittance); });
-    } else if constexpr (Stretch::kIsLinear) {
-      integrate_piece(walk, begin, end, sum, emission);
-    } else {
-      const Float pieces = walk.stretch.count_pieces(begin, end, sum.transmittance);
-      const Float share = hn::Div(hn::Sub(end.u, begin.u), pieces);
-      Cut at = begin;
-      for (Float number = constant(1.0f);; number = hn::Add(number, constant(1.0f))) {
-        const Mask last = hn::Ge(number, pieces);
-        Cut next = end;
-        if (!hn::AllTrue(kFloat, last)) {
-          next = cut_at(walk.stretch, multiply_add(number, share, begin.u));
-          next = {hn::IfThenElse(last, end.u, next.u), hn::IfThenElse(last, end.scalar, next.scalar)};
-        }
-        integrate_piece(walk, at, next, sum, emission);
-        if (hn::AllTrue(kFloat, last)) return;
-        at = next;
-      }
-    }
-  }
-
-  /// One linear piece. Where its emission lies is looked up if it is the only one.
-  template <class Stretch>
-  HWY_INLINE void integrate_piece(const Walk<Stretch>& walk, const Cut& a, const Cut& b, Accumulated& sum,
-                                  Emission* emission) const {
-    const Float before = sum.transmittance;
-    const Segments segment = segment_between(walk.stretch, a, b);
-    base_.integrate(segment, walk.front, sum);
-    if (emission) note_emission(effects_, segment, a, b, before, sum.transmittance, *emission);
-    note_piece(walk, a, b, before, sum.transmittance);
-  }
-
-  /// The piece of a stretch between two cuts, weighed.
-  template <class Stretch>
-  HWY_INLINE Segments segment_between(const Stretch& stretch, const Cut& a, const Cut& b) const {
-    const Float part = hn::Max(hn::Sub(b.u, a.u), constant(0.0f));
-    Segments segment{a.scalar, b.scalar, hn::Mul(stretch.length, part)};
-    if (HWY_UNLIKELY(is_weighted())) weigh(effects_, stretch, a, b, segment);
-    return segment;
-  }
-
-  /// Writes down what depths ask for of a piece: transmittance before and after it.
-  template <class Stretch>
-  HWY_INLINE void note_piece(const Walk<Stretch>& walk, const Cut& a, const Cut& b, Float before, Float after) const {
-    if (effects_.depth) note_depth(walk.stretch, a, b, before, after, walk.depth);
-    if (HWY_LIKELY(effects_.record == nullptr)) return;
-    const Mask takes_part = hn::Gt(walk.stretch.length, constant(0.0f));
-    const Float z_begin = depth_at(walk.stretch, a.u);
-    const Float z[2] = {z_begin, hn::IfThenElse(takes_part, depth_at(walk.stretch, b.u), z_begin)};
-    const Float ends[2] = {before, after};
-    record_depths(*effects_.record, walk.ray.pixels, z, ends);
-  }
-
-  HWY_INLINE bool is_weighted() const { return effects_.weight_by_change > 0.0f || effects_.weight_by_gradient > 0.0f; }
-
   // ---- light ----
 
+  /// Replaces what is lit on the lanes of `uneven` by what two places and, where normals turn, parts give.
   template <class Stretch>
-  HWY_INLINE Illumination light_at(const Walk<Stretch>& walk, Float u, Mask lanes, bool is_surface) const {
+  HWY_NOINLINE void light_uneven(const Segments& segment, const Stretch& stretch, const RayView& ray, Mask uneven,
+                                 const Accumulated& part, const Accumulated& before, Accumulated& lit) const {
+    const Float zero = constant(0.0f);
+    Accumulated sum = before;
+    Front front = base().front_at(segment.scalar_front);
+    Float unused = zero;
+    const Walk<Front, Stretch> walk{stretch, ray, front, sum, unused};
+    const Cut begin{zero, segment.scalar_front}, end{constant(1.0f), segment.scalar_back};
+    Emission emission{zero, zero, zero, zero};
+    note_emission(effects_, segment, begin, end, sum.transmittance, part.transmittance, emission);
+    light(walk, begin, end, emission.spread(hn::Sub(before.transmittance, part.transmittance)), uneven, part);
+    lit.red = hn::IfThenElse(uneven, sum.red, lit.red);
+    lit.green = hn::IfThenElse(uneven, sum.green, lit.green);
+    lit.blue = hn::IfThenElse(uneven, sum.blue, lit.blue);
+  }
+
+  template <class Stretch>
+  HWY_INLINE Illumination light_at(const Walk<Front, Stretch>& walk, Float u, Mask lanes, bool is_surface) const {
     const ShadedPlace place{walk.ray.position(depth_at(walk.stretch, u)), gradient_at(effects_, walk.stretch, u),
                             walk.ray.to_eye(), lanes, is_surface};
     return illuminate(*effects_.shading, place);
   }
 
-  /// What the volume between two cuts emits and absorbs, and where.
-  struct Gathered {
-    Accumulated part;  ///< its transmittance is that behind it
-    Emission emission;
-    Float absorbed;
-    Mask bright;  ///< worth a normal
-  };
-  template <class Stretch>
-  HWY_INLINE Gathered gather(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
-    const Float zero = constant(0.0f);
-    Gathered gathered{
-        {zero, zero, zero, walk.sum.transmittance}, {zero, zero, zero, zero}, zero, hn::FirstN(kFloat, 0)};
-    integrate_pieces(walk, begin, end, gathered.part, &gathered.emission);
-    gathered.absorbed = hn::Sub(walk.sum.transmittance, gathered.part.transmittance);
-    gathered.bright = hn::Gt(gathered.absorbed, constant(effects_.faint));
-    return gathered;
-  }
-
   /// Adds the volume between two cuts, in the light that falls where its emission is.
   template <class Stretch>
-  HWY_NOINLINE void integrate_lit(const Walk<Stretch>& walk, const Cut& begin, const Cut& end) const {
-    const Gathered gathered = gather(walk, begin, end);
+  HWY_NOINLINE void integrate_lit(const Walk<Front, Stretch>& walk, const Cut& begin, const Cut& end) const {
+    const Gathered gathered = pieces_.gather(walk, begin, end);
     if (hn::AllFalse(kFloat, gathered.bright))
       add_in_light(gathered.part, effects_.usual_light, walk.sum);
     else
@@ -321,7 +276,8 @@ class EffectIntegrator {
 
   /// The light at a place of a stretch that has this gradient.
   template <class Stretch>
-  HWY_INLINE Illumination light_of(const Walk<Stretch>& walk, Float u, const Triple& gradient, Mask bright) const {
+  HWY_INLINE Illumination light_of(const Walk<Front, Stretch>& walk, Float u, const Triple& gradient,
+                                   Mask bright) const {
     const RayView& ray = walk.ray;
     if (is_lit_from_eye_) return illuminate_from_eye(*effects_.shading, gradient, ray.direction());
     const Triple place = ray.position(depth_at(walk.stretch, u));
@@ -331,7 +287,7 @@ class EffectIntegrator {
   /// Adds `part`, what has been gathered between two cuts; or, where normals turn too much for two places, gathers it
   /// again in shorter parts.
   template <class Stretch>
-  HWY_INLINE void light(const Walk<Stretch>& walk, const Cut& begin, const Cut& end, const Spread& emission,
+  HWY_INLINE void light(const Walk<Front, Stretch>& walk, const Cut& begin, const Cut& end, const Spread& emission,
                         Mask bright, const Accumulated& part) const {
     const Float one = constant(1.0f), absorbed = hn::Sub(walk.sum.transmittance, part.transmittance);
     const GradientCourse<Stretch> gradients(walk.stretch, effects_.camera_from_gradient);
@@ -348,16 +304,16 @@ class EffectIntegrator {
 
   /// Gathers and lights a stretch in `count` equal parts.
   template <class Stretch>
-  HWY_NOINLINE void integrate_turning(const Walk<Stretch>& walk, const GradientCourse<Stretch>& gradients,
+  HWY_NOINLINE void integrate_turning(const Walk<Front, Stretch>& walk, const GradientCourse<Stretch>& gradients,
                                       const Cut& begin, const Cut& end, Float count) const {
     const Float one = constant(1.0f), share = hn::Div(hn::Sub(end.u, begin.u), count);
-    walk.front = base_.front_at(begin.scalar);
+    walk.front = base().front_at(begin.scalar);
     Cut at = begin;
     for (Float number = one;; number = hn::Add(number, one)) {
       const Mask last = hn::Ge(number, count);
       Cut next = cut_at(walk.stretch, multiply_add(number, share, begin.u));
       next = {hn::IfThenElse(last, end.u, next.u), hn::IfThenElse(last, end.scalar, next.scalar)};
-      const Gathered gathered = gather(walk, at, next);
+      const Gathered gathered = pieces_.gather(walk, at, next);
       if (hn::AllFalse(kFloat, gathered.bright)) {
         add_in_light(gathered.part, effects_.usual_light, walk.sum);
       } else {
@@ -373,9 +329,11 @@ class EffectIntegrator {
     }
   }
 
-  Base base_;
+  HWY_INLINE const Base& base() const { return pieces_.base(); }
+
+  PieceIntegrator<Base> pieces_;
   const Effects& effects_;
-  bool is_light_cut_, is_light_all_, is_lit_from_eye_;
+  bool is_light_cut_, is_light_all_, is_plain_, is_lit_from_eye_;
 };
 
 }  // namespace HWY_NAMESPACE

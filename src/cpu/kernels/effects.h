@@ -98,6 +98,9 @@ struct DepthRecord {
 /// the two normals where colours change, by its third power where emission is uneven, by its fourth power everywhere.
 struct LightChange {
   float first = 0.0f, third = 0.0f, fourth = 0.0f;
+  /// Of light taken as the mean of that at the two ends: by the square of the angle; by the change of diffuse light and
+  /// of the shine from end to end (see EyeLight).
+  float second = 0.0f, diffuse = 0.0f, shine = 0.0f;
 };
 
 struct Effects {

@@ -36,6 +36,21 @@ HWY_INLINE Float power(Float x, float exponent) {
   return exp_negative(hn::Mul(hn::Min(log, constant(0.0f)), constant(-0.69314718f * exponent)));
 }
 
+/// cosine^exponent. Whole exponents, as most are, are products.
+HWY_INLINE Float power_of_cosine(Float cosine, Float square, float exponent) {
+  constexpr float kMostFactors = 256.0f;
+  if (!(exponent <= kMostFactors) || exponent != static_cast<float>(static_cast<int>(exponent)))
+    return power(square, 0.5f * exponent);
+  const int whole = static_cast<int>(exponent);
+  Float product = whole & 1 ? cosine : constant(1.0f), factor = square;
+  for (int left = whole >> 1;;) {
+    if (left & 1) product = hn::Mul(product, factor);
+    left >>= 1;
+    if (left == 0) return product;
+    factor = hn::Mul(factor, factor);
+  }
+}
+
 /// What comes through from a light: optical depth linear along the light, transmittance linear across it, so that both
 /// a homogeneous medium and the edge of a shadow are smooth (percentage closer filtering; Reeves, Salesin, Cook 1987).
 HWY_INLINE Float look_up_transmittance(const float* depths, const std::int32_t sizes[3], const Triple& place) {
@@ -139,21 +154,35 @@ inline bool is_lit_from_eye(const Shading& shading) {
          shading.is_two_sided && !shading.occlusion && !shading.environment && !shading.lights[0].has_shadows();
 }
 
-/// `illuminate` for that: normal, view and light meet in one cosine, and nothing need be normalised.
-HWY_INLINE Illumination illuminate_from_eye(const Shading& shading, const Triple& gradient, const Triple& direction) {
+/// How the eye's own light falls on a place, whatever its colour: diffuse, from 0 to 1; and specular.
+struct EyeLight {
+  Float diffuse, shine;
+};
+
+/// `square`: of the gradient; `along_square`: of its part along the view.
+HWY_INLINE EyeLight light_from_eye(const Shading& shading, Float square, Float along_square) {
   const Float one = constant(1.0f), tiny = constant(1e-30f);
-  const Float square = dot(gradient, gradient), along = dot(gradient, direction);
-  const Float cosine_square =
-      hn::Min(hn::Div(hn::Mul(along, along), hn::Max(hn::Mul(square, dot(direction, direction)), tiny)), one);
+  const Float cosine_square = hn::Min(hn::Div(along_square, hn::Max(square, tiny)), one);
   const Float strength = hn::Div(square, hn::Max(hn::Add(square, constant(shading.half_strength)), tiny));
-  const Float facing = multiply_add(strength, hn::Sub(hn::Sqrt(cosine_square), one), one);
-  const Float shine =
-      hn::Mul(hn::Mul(strength, constant(shading.specular)), power(cosine_square, 0.5f * shading.shininess));
-  const Float ambient = constant(shading.ambient), diffuse = hn::Mul(constant(shading.diffuse), facing);
+  const Float cosine = hn::Sqrt(cosine_square);
+  const Float shine = power_of_cosine(cosine, cosine_square, shading.shininess);
+  return {multiply_add(strength, hn::Sub(cosine, one), one),
+          hn::Mul(hn::Mul(strength, constant(shading.specular)), shine)};
+}
+
+HWY_INLINE Illumination colored(const Shading& shading, const EyeLight& light) {
+  const Float ambient = constant(shading.ambient), diffuse = hn::Mul(constant(shading.diffuse), light.diffuse);
   const float* color = shading.lights[0].color;
   const auto lit = [&](int i) { return multiply_add(constant(color[i]), diffuse, ambient); };
-  const auto shines = [&](int i) { return hn::Mul(constant(color[i]), shine); };
+  const auto shines = [&](int i) { return hn::Mul(constant(color[i]), light.shine); };
   return {{lit(0), lit(1), lit(2)}, {shines(0), shines(1), shines(2)}};
+}
+
+/// `illuminate` for that: normal, view and light meet in one cosine, and nothing need be normalised.
+HWY_INLINE Illumination illuminate_from_eye(const Shading& shading, const Triple& gradient, const Triple& direction) {
+  const Float along = dot(gradient, direction);
+  const Float along_square = hn::Div(hn::Mul(along, along), dot(direction, direction));
+  return colored(shading, light_from_eye(shading, dot(gradient, gradient), along_square));
 }
 
 /// The light at a place. Where the gradient is weak, what needs no normal takes the place of what does.

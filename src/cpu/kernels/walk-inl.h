@@ -35,8 +35,7 @@ class Walker : WalkLanes {
  private:
   using RayState = State<Integrator>;
 
-  // ---- between memory and registers
-  // ---------------------------------------------------------------------------------------------
+  // ---- between memory and registers ----
 
   HWY_INLINE RayState load() const {
     RayState s;
@@ -77,13 +76,14 @@ class Walker : WalkLanes {
     hn::Store(hn::IfThenElseZero(uint_mask(s.alive), hn::Set(kUint, 0xFFFFFFFFu)), kUint, lanes_.alive);
   }
 
-  // ---- walking
-  // ------------------------------------------------------------------------------------------------------------------
+  // ---- walking ----
 
   /// Walks until a quarter of the lanes is idle (or all are), then puts everything back into memory.
   void march() {
     constexpr std::size_t kIdle = std::max<std::size_t>(1, kLanes / 4);
     RayState s = load();
+    if constexpr (kHasEffects)
+      if (is_followed()) light_.set_out(effects(), view_rays().direction());
     const std::size_t wanted = hn::CountTrue(kFloat, s.alive);
     const std::size_t enough = next_ray_ < job_.tile->rays.size() ? (wanted > kIdle ? wanted - kIdle : 0) : 0;
     for (;;) {
@@ -132,8 +132,8 @@ class Walker : WalkLanes {
     rank = hn::Add(rank, hn::IfThenElseZero(hn::Lt(d, replaced), hn::Set(kUint, 1)));
     const Uint neighbour = hn::GatherIndex(kUint, links, hn::BitCast(kInt, hn::Add(five_cells, rank)));
 
-    Entered entered;
-    if constexpr (kHasEffects) entered = note_entered(s);
+    PassedFace entered;
+    if constexpr (kHasEffects) note_face(s, entered);
     replace_vertex(s, out_a, out_b, out_c, d, x, y, vertex, product);
 
     // Depth and scalar where the ray leaves.
@@ -170,13 +170,20 @@ class Walker : WalkLanes {
         part.length = hn::IfThenElseZero(hn::Gt(length_part, zero), part.length);
         integrate_part(s, part, from, to);
       };
-      if (HWY_UNLIKELY(is_cut))
+      if (HWY_UNLIKELY(is_cut)) {
         integrate_intervals(s, z_back, segment, integrate);
-      else if (HWY_LIKELY(integrator_.is_light_all(segment)))
+        light_.lose();
+      } else if (integrator_.is_plain(segment)) {
+        integrator_.integrate(segment, s.front, s.sum);
+      } else if (HWY_UNLIKELY(!integrator_.is_light_all(segment))) {
+        integrate(zero, one, one);
+        light_.lose();
+      } else if (is_followed()) {
+        integrate_followed(s, entered, d, {out_a, out_b, out_c}, segment, stretch_of);
+      } else {
         integrator_.integrate_lit_segment(
             segment, stretch_of, [&] { return view_rays(); }, s.front, s.sum);
-      else
-        integrate(zero, one, one);
+      }
     } else {
       const auto integrate = [&](Float from, Float to, Float length_part) {
         const Float rise = hn::Sub(segment.scalar_back, segment.scalar_front);
@@ -282,28 +289,37 @@ class Walker : WalkLanes {
 
   // ---- effects ----
 
-  /// What is remembered of a face that rays enter through.
-  struct Entered {
-    Uint id[3];
-    Float weights[3];
-  };
-  static HWY_INLINE Entered note_entered(const RayState& s) {
-    const Float total = hn::Add(hn::Add(s.weight[0], s.weight[1]), s.weight[2]);
-    const Mask valid = hn::Gt(total, constant(0.0f));
-    const Float inverse = hn::Div(constant(1.0f), hn::IfThenElse(valid, total, constant(1.0f)));
-    Entered entered;
-    for (int k = 0; k < 3; ++k) {
-      entered.id[k] = s.id[k];
-      entered.weights[k] = hn::IfThenElse(valid, hn::Mul(s.weight[k], inverse), constant(1.0f / 3.0f));
-    }
-    return entered;
-  }
-
   struct Replaced {
     Mask a, b, c;
   };
+
+  static HWY_INLINE void note_face(const RayState& s, PassedFace& face) {
+    for (int k = 0; k < 3; ++k) {
+      face.id[k] = s.id[k];
+      face.weights[k] = s.weight[k];
+    }
+  }
+
+  /// Whether the light of the eye is taken from cell to cell.
+  HWY_INLINE bool is_followed() const {
+    return !kCellData && !mesh_.has_cell_gradients && integrator_.is_light_followed();
+  }
+
+  template <class MakeStretch>
+  HWY_INLINE void integrate_followed(RayState& s, const PassedFace& entered, Uint d, const Replaced& replaced,
+                                     const Segments& segment, const MakeStretch& make_stretch) {
+    const auto pass = [&]() -> const FollowedLight& {
+      const Mask out[3] = {replaced.a, replaced.b, replaced.c};
+      light_.pass(effects(), mesh_.gradients, entered, d, out, s.weight);
+      return light_;
+    };
+    integrator_.integrate_followed_segment(
+        segment, pass, [&] { light_.lose(); }, make_stretch, [&] { return view_rays(); }, s.front, s.sum);
+  }
+  const Effects& effects() const { return *job_.tables->effects; }
+
   /// `inverse`: of the sum of the weights of the exit face, or 0 where that has none.
-  HWY_INLINE TetrahedronStretch make_stretch(const RayState& s, const Entered& entered, Uint d,
+  HWY_INLINE TetrahedronStretch make_stretch(const RayState& s, const PassedFace& entered, Uint d,
                                              const Replaced& replaced, Float inverse, const Segments& segment,
                                              Float z_back) const {
     TetrahedronStretch stretch{segment.scalar_front,
@@ -315,10 +331,15 @@ class Walker : WalkLanes {
                                s.cell,
                                {entered.id[0], entered.id[1], entered.id[2]},
                                d,
-                               {entered.weights[0], entered.weights[1], entered.weights[2]},
+                               {},
                                {},
                                {replaced.a, replaced.b, replaced.c}};
-    const Mask flat = hn::Eq(inverse, constant(0.0f));
+    const Float total = hn::Add(hn::Add(entered.weights[0], entered.weights[1]), entered.weights[2]);
+    const Mask valid = hn::Gt(total, constant(0.0f)), flat = hn::Eq(inverse, constant(0.0f));
+    const Float front_inverse = hn::Div(constant(1.0f), hn::IfThenElse(valid, total, constant(1.0f)));
+    for (int k = 0; k < 3; ++k)
+      stretch.front_weights[k] =
+          hn::IfThenElse(valid, hn::Mul(entered.weights[k], front_inverse), constant(1.0f / 3.0f));
     for (int k = 0; k < 3; ++k)
       stretch.back_weights[k] = hn::IfThenElse(flat, constant(1.0f / 3.0f), hn::Mul(s.weight[k], inverse));
     return stretch;
@@ -341,13 +362,6 @@ class Walker : WalkLanes {
     if (HWY_LIKELY(hn::AllFalse(kFloat, ended))) return;
     s.alive = hn::AndNot(ended, s.alive);
     forget_entries(ended);  // A ray that is done has no further entry.
-  }
-
-  void forget_entries(Mask ended) const {
-    HWY_ALIGN std::uint32_t lane[kLanes];
-    hn::Store(hn::IfThenElseZero(uint_mask(ended), hn::Set(kUint, 1)), kUint, lane);
-    for (std::size_t i = 0; i < kLanes; ++i)
-      if (lane[i] && lanes_.ray[i] != kNoRay) lanes_.next_entry[i] = job_.tile->rays[lanes_.ray[i]].end;
   }
 
   /// A ray that has not moved for many cells goes round in circles, which only damaged meshes allow: stop it.
@@ -373,6 +387,7 @@ class Walker : WalkLanes {
   static constexpr std::uint64_t kCheckedSteps = 1024;
 
   Integrator integrator_;
+  FollowedLight light_;  // of rays with effects
   std::uint64_t steps_ = 0;
   WalkStatistics statistics_;
 };

@@ -135,6 +135,14 @@ class WalkLanes {
     if (has_effects_ && job_.tables->effects->depth) job_.tables->effects->depth[index] = lanes_.depth[lane];
   }
 
+  /// Rays that are done have no further entry.
+  void forget_entries(Mask ended) const {
+    HWY_ALIGN std::uint32_t lane[kLanes];
+    hn::Store(hn::IfThenElseZero(uint_mask(ended), hn::Set(kUint, 1)), kUint, lane);
+    for (std::size_t i = 0; i < kLanes; ++i)
+      if (lane[i] && lanes_.ray[i] != kNoRay) lanes_.next_entry[i] = job_.tile->rays[lanes_.ray[i]].end;
+  }
+
   static constexpr float kEndless = std::numeric_limits<float>::infinity();
 
   const WalkJob& job_;
