@@ -8,7 +8,8 @@
 #include "tetravox/slicing.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,21 @@ TEST(GlIntegrators, OfProjectedCellsAreThoseOfTheCpu) {
   }
 }
 
+/// How far the pictures of two backends may be apart, and pictures by tables from those by integrals.
+constexpr double kMostApart = 3e-3, kMostApartRms = 3e-4;
+/// At a fixed rate the last sample of a ray is there or not: so many pixels of a thousand may differ by more.
+constexpr int kApartOfThousand = 10;
+
+int count_apart(const Image& a, const Image& b) {
+  int count = 0;
+  for (std::size_t pixel = 0; pixel < a.pixels.size(); pixel += 4) {
+    float most = 0.0f;
+    for (std::size_t i = pixel; i < pixel + 4; ++i) most = std::max(most, std::abs(a.pixels[i] - b.pixels[i]));
+    count += most > kMostApart ? 1 : 0;
+  }
+  return count;
+}
+
 RenderSettings table_settings(Integrator integrator) {
   RenderSettings settings = tests::make_settings(integrator, 64, 48);
   settings.use_early_ray_termination = false;
@@ -80,7 +96,10 @@ void expect_same_tables(const std::string& name, double samples_per_voxel) {
         const Image image = gl.render(camera, settings), expected = cpu.render(camera, settings);
         const std::string where = name + " " + function + " " + camera_name + " " + name_of(integrator);
         EXPECT_TRUE(tests::is_valid_picture(image)) << where;
-        EXPECT_TRUE(tests::images_agree(image, expected, 3e-3, 3e-4)) << where;
+        if (samples_per_voxel > 0.0)
+          EXPECT_LE(1000 * count_apart(image, expected), kApartOfThousand * image.width * image.height) << where;
+        else
+          EXPECT_TRUE(tests::images_agree(image, expected, kMostApart, kMostApartRms)) << where;
       }
   }
 }
@@ -118,9 +137,7 @@ TEST(GlIntegrators, TablesOfSlabsAreAsGoodAsTables) {
           const std::string where =
               name_of(kind) + " " + name_of(shape) + " " + std::to_string(slices) + " " + name_of(integrator);
           EXPECT_TRUE(tests::is_valid_picture(image)) << where;
-          std::printf("%s: %s\n", where.c_str(), tests::describe(tests::compare_images(image, expected)).c_str());
-          const bool is_table = integrator != Integrator::kPartial;
-          EXPECT_TRUE(tests::images_agree(image, expected, is_table ? 1e-2 : 2e-3, is_table ? 2e-3 : 3e-4)) << where;
+          EXPECT_TRUE(tests::images_agree(image, expected, kMostApart, kMostApartRms)) << where;
         }
 }
 
