@@ -50,20 +50,29 @@ bench:
 	@cmake --build --preset release --parallel $(JOBS) --target product export_dataset visibility_orders
 	@/usr/bin/python3 bench/run.py --build $(BUILD) $(if $(QUICK),--quick) $(if $(README),--readme $(README))
 
+# What measures by OpenGL, where the tree is built with it.
+GL_PAPERS = $(if $(shell grep -s '^TETRAVOX_WITH_GL:BOOL=OFF' $(BUILD)/CMakeCache.txt),,papers_opengl projection_tables \
+  slicing_tables)
+
 papers:
 	@tools/install_dependencies.sh build bench
 	@$(CONFIGURE) -DTETRAVOX_WITH_BENCH=ON
-	@cmake --build --preset release --parallel $(JOBS) --target preintegration_tables papers_opengl \
-	  projection_tables
+	@cmake --build --preset release --parallel $(JOBS) --target preintegration_tables $(GL_PAPERS)
 	@mkdir -p out/papers
 	@$(BUILD)/bin/preintegration_tables --json out/papers/tables.json $(if $(QUICK),--quick) > out/papers/tables.md
 	@cat out/papers/tables.md
+ifeq ($(strip $(GL_PAPERS)),)
+	@echo "left out, as this tree has TETRAVOX_WITH_GL=OFF: the tables by OpenGL, of cell projection and of slicing"
+else
 	@$(BUILD)/bin/papers_opengl --json out/papers/opengl.json $(if $(DATA),--data $(DATA)) $(if $(QUICK),--quick) \
 	  > out/papers/opengl.md
 	@cat out/papers/opengl.md
 	@$(BUILD)/bin/projection_tables $(if $(DATA),--shared $(DATA)/..) --json out/papers/projection.json \
 	  $(if $(QUICK),--quick) > out/papers/projection.md
 	@cat out/papers/projection.md
+	@$(BUILD)/bin/slicing_tables --json out/papers/slicing.json $(if $(QUICK),--quick) > out/papers/slicing.md
+	@cat out/papers/slicing.md
+endif
 
 install:
 	@tools/install_dependencies.sh build

@@ -3,7 +3,8 @@
 ///
 ///     projection_tables [--shared DIR] [--json FILE] [--quick]
 ///
-/// Each frame looks from one degree further round the data, so that every order is made anew.
+/// Each frame looks from one degree further round the data, so that every order is made anew. Of the papers stands
+/// beside what could be looked up; "not at hand" is what could not.
 
 #include "tetravox/error.h"
 #include "tetravox/gl.h"
@@ -32,6 +33,9 @@ using tetravox::RenderSettings;
 using tetravox::RenderStatistics;
 using tetravox::Source;
 using Json = nlohmann::ordered_json;
+
+const char* const kNotAtHand = "not at hand";
+const char* const kNone = "-";  // the paper has no such row
 
 struct Options {
   std::filesystem::path shared = "../shared";
@@ -70,28 +74,34 @@ class Report {
   void begin(const std::string& key, const std::string& title) {
     key_ = key;
     json_[key] = {{"title", title}, {"rows", Json::array()}};
-    std::cout << "\n## " << title << "\n\n| data | cells | method | frames/s | frame (s) | sort (s) | triangles (s) |\n"
-              << "|---|---|---|---|---|---|---|\n";
+    std::cout << "\n## " << title
+              << "\n\n| data | cells | method | frames/s | frame (s) | sort (s) | triangles (s) | paper: frames/s "
+                 "|\n|---|---|---|---|---|---|---|---|\n";
   }
 
-  void add(const std::string& data, const PreparedMesh& mesh, const std::string& method,
-           const RenderSettings& settings) {
+  void add(const std::string& data, const PreparedMesh& mesh, const std::string& method, const RenderSettings& settings,
+           const char* paper) {
     Json row = measure(mesh, settings, options_.frames);
     std::array<char, 160> numbers{};
     std::snprintf(numbers.data(), numbers.size(), "%.3g | %.3g | %.3g | %.3g", row["frames_per_second"].get<double>(),
                   row["seconds"].get<double>(), row["sort_seconds"].get<double>(),
                   row["decompose_seconds"].get<double>());
-    std::cout << "| " << data << " | " << mesh.cells.size() << " | " << method << " | " << numbers.data() << " |"
-              << std::endl;
+    std::cout << "| " << data << " | " << mesh.cells.size() << " | " << method << " | " << numbers.data() << " | "
+              << paper << " |" << std::endl;
     row["data"] = data;
     row["cells"] = mesh.cells.size();
     row["method"] = method;
+    row["paper"] = paper;
     json_[key_]["rows"].push_back(row);
   }
 
   const Options& options() const { return options_; }
+  /// @throws Error (kCannotWrite).
   void write() const {
-    if (!options_.json.empty()) std::ofstream(options_.json) << json_.dump(2) << "\n";
+    if (options_.json.empty()) return;
+    std::ofstream out(options_.json);
+    out << json_.dump(2) << "\n";
+    if (!out.flush()) throw tetravox::Error(tetravox::ErrorCode::kCannotWrite, "cannot write '" + options_.json + "'");
   }
 
  private:
@@ -121,7 +131,7 @@ void with_mesh(const Report& report, const std::string& name, const Draw& draw) 
     const PreparedMesh mesh = load(report, name);
     draw(mesh);
   } catch (const tetravox::Error& error) {
-    std::cout << "| " << name << " | | left out: " << error.what() << " | | | | |\n";
+    std::cout << "| " << name << " | | left out: " << error.what() << " | | | | | |\n";
   }
 }
 
@@ -133,7 +143,7 @@ void measure_orders(Report& report) {
         RenderSettings settings = make_settings(Source::kProject, 1280, 960);
         settings.integrator = Integrator::kPolynomial;  // of degree 2, as theirs
         settings.projection.sort = sort;
-        report.add(name, mesh, name_of(sort), settings);
+        report.add(name, mesh, name_of(sort), settings, kNotAtHand);
       }
     });
 }
@@ -145,14 +155,14 @@ void measure_sources(Report& report) {
     with_mesh(report, name, [&](const PreparedMesh& mesh) {
       RenderSettings settings = make_settings(Source::kVicp, 512, 512);
       settings.projection.transfer = MeshTransfer::kCells;
-      report.add(name, mesh, "VICP: `vicp`, cells sent", settings);
+      report.add(name, mesh, "VICP: `vicp`, cells sent", settings, kNotAtHand);
       settings.projection.transfer = MeshTransfer::kOrder;
-      report.add(name, mesh, "VICP-GPU: `vicp`, order sent", settings);
-      report.add(name, mesh, "HARC: `walk`", make_settings(Source::kWalk, 512, 512));
+      report.add(name, mesh, "VICP-GPU: `vicp`, order sent", settings, kNotAtHand);
+      report.add(name, mesh, "HARC: `walk`", make_settings(Source::kWalk, 512, 512), kNotAtHand);
       settings = make_settings(Source::kProject, 512, 512);
-      report.add(name, mesh, "`project`", settings);
+      report.add(name, mesh, "`project`", settings, kNone);
       settings.projection.use_pixel_correction = false;
-      report.add(name, mesh, "`project`, triangles carry segments", settings);
+      report.add(name, mesh, "`project`, triangles carry segments", settings, kNone);
     });
 }
 
@@ -164,7 +174,8 @@ void measure_integrators(Report& report) {
                                         Integrator::kAntiderivative, Integrator::kPartial, Integrator::kPost}) {
       RenderSettings settings = make_settings(Source::kProject, 512, 384);
       settings.integrator = integrator;
-      report.add("sphere", mesh, name_of(integrator), settings);
+      const bool is_theirs = integrator == Integrator::kTable3d || integrator == Integrator::kCylindrical;
+      report.add("sphere", mesh, name_of(integrator), settings, is_theirs ? kNotAtHand : kNone);
     }
   });
 }

@@ -1,9 +1,10 @@
 /// Draws a grid by slices: every kind, classification and number of slices on functions that are hard to draw. Prints
 /// errors against the CPU's picture at a tolerance of 1e-5, and seconds of a frame, as tables in Markdown; and how many
-/// slices post-classification needs for the error of pre-integrated ones. With a second argument writes all of it as
-/// JSON, too.
+/// slices post-classification needs for the error of pre-integrated ones.
 ///
-///     slicing_tables FILE|SCENE.json [RESULTS.json]
+///     slicing_tables [FILE|SCENE.json] [--json RESULTS.json] [--quick]
+///
+/// Without a file an embedded grid is drawn. --quick: one round, and three numbers of slices.
 
 #include "tetravox/error.h"
 #include "tetravox/gl.h"
@@ -30,10 +31,16 @@ using tetravox::Integrator;
 using tetravox::SlabShape;
 using tetravox::SlicingKind;
 
-constexpr int kSide = 200, kRepeats = 3;
+constexpr int kSide = 200;
+constexpr const char* kEmbedded = "builtin:turbulence?size=64&type=float32&seed=4";
 constexpr double kExactTolerance = 1e-5;
 constexpr double kLong = 0.5;  ///< seconds of a frame that is drawn once
-constexpr std::array<int, 8> kSlices{32, 64, 128, 256, 512, 1024, 2048, 4096};
+
+struct Options {
+  std::string input = kEmbedded, json;
+  int rounds = 3;
+  std::vector<int> slices{32, 64, 128, 256, 512, 1024, 2048, 4096};
+};
 constexpr int kUsual = 1024;  ///< more are drawn by post-classification and view-3d only
 
 /// How slabs are classified.
@@ -71,8 +78,9 @@ Subject read_subject(const std::string& input) {
     scene = tetravox::parse_scene(text.str(), input);
     scene.data.file = (std::filesystem::path(input).parent_path() / scene.data.file).string();
   }
-  tetravox::Dataset dataset = scene.data.file.starts_with("builtin:") ? tetravox::make_builtin(scene.data.file)
-                                                                      : tetravox::read_dataset(scene.data.file);
+  tetravox::Dataset dataset = scene.data.file.starts_with("builtin:")
+                                  ? tetravox::make_builtin(scene.data.file.substr(8))
+                                  : tetravox::read_dataset(scene.data.file);
   if (!dataset.is_grid())
     throw tetravox::Error(tetravox::ErrorCode::kInvalidArgument, "'" + input + "' is a mesh: give a grid");
   Subject subject;
@@ -93,13 +101,13 @@ std::array<double, 2> compare(const tetravox::Image& a, const tetravox::Image& b
 }
 
 Row measure(tetravox::Renderer& renderer, const tetravox::Camera& camera, const tetravox::RenderSettings& settings,
-            const tetravox::Image& exact) {
+            const tetravox::Image& exact, int rounds) {
   Row row;
   row.kind = settings.slicing.kind;
   row.slices = settings.slicing.slices;
   std::vector<double> seconds;
   tetravox::RenderStatistics statistics;
-  for (int i = 0; i < kRepeats; ++i) {
+  for (int i = 0; i < rounds; ++i) {
     const tetravox::Image image = renderer.render(camera, settings, &statistics);
     seconds.push_back(statistics.seconds);
     const auto [most, rms] = compare(image, exact);
@@ -138,7 +146,7 @@ std::vector<NamedFunction> make_functions(const tetravox::ValueRange& range, dou
   return functions;
 }
 
-std::vector<Row> measure_all(const Subject& subject) {
+std::vector<Row> measure_all(const Subject& subject, const Options& options) {
   std::vector<Row> rows;
   tetravox::Renderer gl = tetravox::make_gl_renderer(subject.grid), cpu(subject.grid);
   const auto side = [&](std::size_t axis) { return subject.grid.bounds[axis].max - subject.grid.bounds[axis].min; };
@@ -155,13 +163,13 @@ std::vector<Row> measure_all(const Subject& subject) {
     settings.source = tetravox::Source::kSlices;
     for (const auto& [kind, description] : tetravox::slicing_kind_names())
       for (const Method& method : kMethods)
-        for (const int slices : kSlices) {
+        for (const int slices : options.slices) {
           if (slices > kUsual && (method.integrator != Integrator::kPost || kind != "view-3d")) continue;
           settings.slicing.kind = tetravox::slicing_kind_from_name(kind);
           settings.slicing.slices = slices;
           settings.slicing.slabs = method.slabs;
           settings.integrator = method.integrator;
-          Row row = measure(gl, subject.camera, settings, exact);
+          Row row = measure(gl, subject.camera, settings, exact, options.rounds);
           row.function = name;
           row.method = method.name;
           rows.push_back(row);
@@ -174,7 +182,7 @@ std::vector<Row> measure_all(const Subject& subject) {
 
 void print_errors(const std::vector<Row>& rows) {
   std::printf(
-      "| function | kind | classification | slices | drawn | max | RMS | seconds "
+      "\n## Slices against error and time\n\n| function | kind | classification | slices | drawn | max | RMS | seconds "
       "|\n|---|---|---|---|---|---|---|---|\n");
   for (const Row& row : rows) {
     const std::string slices = row.kind == SlicingKind::kObject2d ? "all" : std::to_string(row.slices);
@@ -198,14 +206,15 @@ std::optional<double> slices_for(const std::vector<Row>& rows, const Row& wanted
   return {};
 }
 
-void print_quarters(const std::vector<Row>& rows) {
+void print_quarters(const std::vector<Row>& rows, const Options& options) {
   std::printf(
-      "\n| function | kind | classification | slices | RMS | slices of post for that | times "
+      "\n## Slices of post-classification for the error of pre-integrated ones\n\n| function | kind | classification | "
+      "slices | RMS | slices of post for that | times "
       "|\n|---|---|---|---|---|---|---|\n");
   for (const Row& row : rows) {
     if (!row.method.starts_with("pre-integrated") || row.kind == SlicingKind::kObject2d) continue;
     const std::optional<double> needed = slices_for(rows, row);
-    const int most = row.kind == SlicingKind::kView3d ? kSlices.back() : kUsual;
+    const int most = std::min(options.slices.back(), row.kind == SlicingKind::kView3d ? options.slices.back() : kUsual);
     const std::string text = needed ? std::to_string(std::lround(*needed)) : "> " + std::to_string(most);
     const double times = (needed ? *needed : most) / row.slices;
     std::printf("| %s | %s | %s | %d | %.1e | %s | %s%.1f |\n", row.function.c_str(), name_of(row.kind).c_str(),
@@ -229,20 +238,48 @@ void write_json(const std::vector<Row>& rows, const std::string& file) {
     separator = ",\n";
   }
   out << "\n]}\n";
-  if (!out) throw tetravox::Error(tetravox::ErrorCode::kCannotWrite, "cannot write '" + file + "'");
+  if (!out.flush()) throw tetravox::Error(tetravox::ErrorCode::kCannotWrite, "cannot write '" + file + "'");
+}
+
+Options read_options(int argc, char** argv) {
+  Options options;
+  bool has_input = false;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--quick") {
+      options.rounds = 1;
+      options.slices = {32, 128, 512};
+    } else if (word == "--json" && i + 1 < argc) {
+      options.json = argv[++i];
+    } else if (!has_input && !word.starts_with("--")) {
+      options.input = word;
+      has_input = true;
+    } else {
+      throw tetravox::Error(tetravox::ErrorCode::kInvalidArgument,
+                            "usage: slicing_tables [FILE|SCENE.json] [--json RESULTS.json] [--quick]");
+    }
+  }
+  return options;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    if (argc != 2 && argc != 3)
-      throw tetravox::Error(tetravox::ErrorCode::kInvalidArgument,
-                            "usage: slicing_tables FILE|SCENE.json [RESULTS.json]");
-    const std::vector<Row> rows = measure_all(read_subject(argv[1]));
+    const Options options = read_options(argc, argv);
+    std::printf("# Slicing\n\n");
+    if (tetravox::gl_devices().empty()) {
+      std::printf("There is no device with OpenGL 4.5 by EGL: nothing was measured.\n");
+      return 0;
+    }
+    const Subject subject = read_subject(options.input);
+    const auto& points = subject.grid.data.shape.dimensions;
+    std::printf("Of `%s`, %u x %u x %u values, %d x %d pixels.\n", options.input.c_str(), points[0], points[1],
+                points[2], kSide, kSide);
+    const std::vector<Row> rows = measure_all(subject, options);
     print_errors(rows);
-    print_quarters(rows);
-    if (argc == 3) write_json(rows, argv[2]);
+    print_quarters(rows, options);
+    if (!options.json.empty()) write_json(rows, options.json);
     return 0;
   } catch (const tetravox::Error& error) {
     std::fprintf(stderr, "slicing_tables: %s\n", error.what());

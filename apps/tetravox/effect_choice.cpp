@@ -98,6 +98,15 @@ std::vector<std::string> check_effects(const EffectOptions& options, const Rende
     lines.push_back(
         "--shadows changes nothing: surroundings throw none, and there are no other lights; --ambient-occlusion "
         "darkens hollows");
+  const bool is_half_angle = lighting.shadows == ShadowKind::kHalfAngle;
+  if (options.shadow_resolution && !is_half_angle && lighting.shadows != ShadowKind::kVolume &&
+      lighting.ambient_occlusion == 0)
+    lines.push_back(
+        "--shadow-resolution changes nothing: it is for --shadows volume, half-angle and --ambient-occlusion");
+  if ((options.translucency || options.translucency_angle) && !is_half_angle)
+    lines.push_back("--translucency and -angle change nothing: they are for --shadows half-angle");
+  else if (options.translucency_angle && lighting.translucency == 0.0)
+    lines.push_back("--translucency-angle changes nothing: there is no --translucency");
   if (settings.clipping.shapes.size() < 2 && options.use_union)
     lines.push_back("--clip-combine changes nothing: there are no two shapes to combine");
   if (settings.opacity_weight == OpacityWeight::kNone && options.weight_scale)

@@ -74,6 +74,8 @@ void run_list(const ListOptions& options) {
                 << with_title("Kinds of slices (--source slices=KIND):", slicing_kind_names())
                 << with_title("Slabs between slices (--slabs):", slab_shape_names())
                 << with_title("Orders of projected cells (--sort):", cell_sort_names())
+                << with_title("Where projected cells become triangles (--decomposition):", decomposition_names())
+                << with_title("What of the mesh is sent for a frame (--mesh-transfer):", mesh_transfer_names())
                 << with_title("Classifications (--classification):", classification_names())
                 << with_title("Integrators (--integrator):", integrator_names())
                 << with_title("Orders of entries, by OpenGL (--entry-order):", entry_order_names())

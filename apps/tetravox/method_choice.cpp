@@ -47,21 +47,27 @@ Integrator integrator_of(Classification classification) {
   throw Error(ErrorCode::kInvalidArgument, "the scene's render." + key + " " + text);
 }
 
-/// Adds a line for each option of tables that the integrator has no use for.
-void check_tables(const PreintegrationOptions& tables, Integrator integrator, std::vector<std::string>& lines) {
-  const auto is_one_of = [&](std::initializer_list<Integrator> users) {
-    return std::find(users.begin(), users.end(), integrator) != users.end();
-  };
+/// Options that change nothing, one line each.
+struct UnusedOptions {
+  std::vector<std::string> lines;
+
+  void note(bool is_given, bool is_used, const std::string& option, const std::string& reason) {
+    if (is_given && !is_used) lines.push_back(option + " changes nothing: " + reason);
+  }
+};
+
+void check_tables(const PreintegrationOptions& tables, const RenderSettings& settings, UnusedOptions& unused) {
+  const Integrator integrator = settings.integrator;
   const auto check = [&](bool is_given, const std::string& option, std::initializer_list<Integrator> users) {
-    if (!is_given || is_one_of(users)) return;
     std::string names;
     for (const Integrator user : users) names += (names.empty() ? "" : ", ") + name_of(user);
-    lines.push_back(option + " changes nothing: it is for --integrator " + names + ", and this picture is drawn by " +
-                    name_of(integrator));
+    unused.note(is_given, std::find(users.begin(), users.end(), integrator) != users.end(), option,
+                "it is for --integrator " + names + ", and this picture is drawn by " + name_of(integrator));
   };
   constexpr Integrator kTable = Integrator::kTable3d, kPolynomial = Integrator::kPolynomial,
                        kCylindrical = Integrator::kCylindrical;
   check(tables.scalars.has_value(), "--preintegration-size", {kTable, kPolynomial});
+  check(tables.lengths && integrator == kPolynomial, "the second number of --preintegration-size", {kTable});
   check(tables.length_spacing.has_value(), "--preintegration-lengths", {kTable});
   check(tables.opacity.has_value(), "--preintegration-opacity", {kPolynomial});
   check(tables.planes.has_value(), "--preintegration-planes", {kCylindrical});
@@ -70,6 +76,73 @@ void check_tables(const PreintegrationOptions& tables, Integrator integrator, st
   check(tables.bits.has_value(), "--preintegration-bits", {kTable, kPolynomial, kCylindrical});
   check(tables.device.has_value(), "--preintegration-device", {kTable, kPolynomial, kCylindrical});
   check(tables.use_incremental.has_value(), "--preintegration-incremental", {kTable, kPolynomial});
+  unused.note(tables.use_incremental && (integrator == kTable || integrator == kPolynomial),
+              settings.preintegration.device == TableDevice::kCpu, "--preintegration-incremental",
+              "it is for --preintegration-device cpu");
+}
+
+void check_backend(const MethodOptions& method, Source source, UnusedOptions& unused) {
+  unused.note(method.gl_device.has_value(), method.use_gl, "--gl-device", "it is for --backend gl");
+  unused.note(method.entry_order.has_value(), method.use_gl && source == Source::kWalk, "--entry-order",
+              "it is for meshes by --backend gl and the source walk");
+  unused.note(!method.instruction_set.empty(), !method.use_gl, "--instruction-set", "it is for --backend cpu");
+}
+
+void check_slices(const MethodOptions& method, const RenderSettings& settings, Source source, UnusedOptions& unused) {
+  const bool is_sliced = source == Source::kSlices;
+  const std::string of_slices = "it is for --source slices";
+  unused.note(method.slices.has_value(), is_sliced, "--slices", of_slices);
+  unused.note(method.slices_per_voxel.has_value(), is_sliced, "--slices-per-voxel", of_slices);
+  unused.note(method.slabs.has_value(), is_sliced, "--slabs", of_slices);
+  if (!is_sliced) return;
+  const bool has_number = settings.slicing.kind != SlicingKind::kObject2d;
+  const std::string of_textures = "the slices of object-2d are the 2D textures themselves";
+  unused.note(method.slices.has_value(), has_number, "--slices", of_textures);
+  unused.note(method.slices_per_voxel.has_value(), has_number, "--slices-per-voxel", of_textures);
+  unused.note(method.slices_per_voxel && has_number, settings.slicing.slices == 0, "--slices-per-voxel",
+              "--slices says how many there are");
+  unused.note(method.slabs.has_value(), classification_of(settings.integrator) == Classification::kPreintegrated,
+              "--slabs", "it is for --classification preintegrated");
+}
+
+void check_samples(const MethodOptions& method, const RenderSettings& settings, Source source, UnusedOptions& unused) {
+  const bool is_post = settings.integrator == Integrator::kPost, is_sliced = source == Source::kSlices;
+  const auto note = [&](bool is_used, const std::string& reason) {
+    unused.note(method.samples.has_value(), is_used, "--samples", reason);
+  };
+  note(is_post, "it is for --integrator post, and this picture is drawn by " + name_of(settings.integrator));
+  if (!is_post) return;
+  note(!is_sliced, "between two slices is one sample; --slices says how many there are");
+  note(is_sliced || settings.samples_per_voxel == 0.0, "--samples-per-voxel says where samples are taken");
+}
+
+void check_projection(const MethodOptions& method, Source source, UnusedOptions& unused) {
+  const bool is_projected = source == Source::kProject, is_either = is_projected || source == Source::kVicp;
+  unused.note(method.sort.has_value(), is_either, "--sort", "it is for --source project and vicp");
+  unused.note(method.decomposition.has_value(), is_projected, "--decomposition", "it is for --source project");
+  unused.note(method.use_pixel_correction.has_value(), is_projected, "--pixel-correction",
+              "it is for --source project");
+  unused.note(method.transfer.has_value(), is_either, "--mesh-transfer", "it is for --source project and vicp");
+}
+
+/// What rays stop at, and what they may be wrong by.
+void check_rays(const MethodOptions& method, const RenderSettings& settings, Source source, UnusedOptions& unused) {
+  const bool is_mesh = source != Source::kMarch && source != Source::kSlices;
+  const bool is_blended =
+      source == Source::kSlices || (is_mesh && source != Source::kWalk && settings.projection.sort != CellSort::kExact);
+  unused.note(method.use_early_ray_termination.has_value(), !is_blended, "--early-ray-termination",
+              "the source " + name_of(source) + " draws all there is" +
+                  (is_mesh ? ", unless it sorts segments (--sort exact)" : ""));
+  // Slabs, the cells of a mesh and fixed rates are segments as they are, and only `antiderivative` looks at the
+  // tolerance inside. But rays through grids also end by it.
+  const bool has_fixed_segments = source != Source::kMarch || settings.samples_per_voxel > 0.0;
+  const bool ends_by_it = source == Source::kMarch && settings.use_early_ray_termination;
+  unused.note(method.tolerance.has_value(),
+              settings.integrator == Integrator::kAntiderivative || !has_fixed_segments || ends_by_it, "--tolerance",
+              "the integrator " + name_of(settings.integrator) +
+                  (is_mesh                     ? " takes each cell as it is"
+                   : source == Source::kSlices ? " takes slabs as they are"
+                                               : " with --samples-per-voxel takes segments as they are"));
 }
 
 void override_tables(const PreintegrationOptions& tables, PreintegrationSettings& settings) {
@@ -152,34 +225,15 @@ std::vector<std::string> check_method(const MethodOptions& method, const RenderS
   require(!is_grid || settings.integrator != Integrator::kCylindrical, method.integrator.has_value(),
           "--integrator cylindrical", "integrator 'cylindrical'");
 
-  std::vector<std::string> lines;
-  if (!method.use_gl && (method.entry_order || method.gl_device))
-    lines.push_back(std::string(method.entry_order ? "--entry-order" : "--gl-device") +
-                    " changes nothing: it is for --backend gl");
-  check_tables(method.preintegration, settings.integrator, lines);
-  if ((method.slices || method.slices_per_voxel || method.slabs) && settings.source != Source::kSlices)
-    lines.push_back(std::string(method.slices  ? "--slices"
-                                : method.slabs ? "--slabs"
-                                               : "--slices-per-voxel") +
-                    " changes nothing: it is for --source slices");
-  const std::string integrator = name_of(settings.integrator);
-  if (method.samples && settings.integrator != Integrator::kPost)
-    lines.push_back("--samples changes nothing: it is for --integrator post, and this picture is drawn by " +
-                    integrator);
-  const bool is_projected = settings.source == Source::kProject, is_vicp = settings.source == Source::kVicp;
-  const auto note_unused = [&](bool is_given, const char* option, const char* source) {
-    if (is_given) lines.push_back(std::string(option) + " changes nothing: it is for --source " + source);
-  };
-  note_unused(method.sort && !is_projected && !is_vicp, "--sort", "project and vicp");
-  note_unused(method.decomposition && !is_projected, "--decomposition", "project");
-  note_unused(method.use_pixel_correction && !is_projected, "--pixel-correction", "project");
-  note_unused(method.transfer && !is_vicp, "--mesh-transfer", "vicp");
-  // Segments of a mesh are its cells, and only `antiderivative` looks at the tolerance inside; a grid's follow it.
-  const bool has_fixed_segments = !is_grid || settings.samples_per_voxel > 0.0;
-  if (method.tolerance && settings.integrator != Integrator::kAntiderivative && has_fixed_segments)
-    lines.push_back("--tolerance changes nothing: the integrator " + integrator +
-                    (is_grid ? " with --samples-per-voxel takes segments as they are" : " takes each cell as it is"));
-  return lines;
+  const Source source = settings.source.value_or(is_grid ? Source::kMarch : Source::kWalk);
+  UnusedOptions unused;
+  check_backend(method, source, unused);
+  check_tables(method.preintegration, settings, unused);
+  check_slices(method, settings, source, unused);
+  check_samples(method, settings, source, unused);
+  check_projection(method, source, unused);
+  check_rays(method, settings, source, unused);
+  return unused.lines;
 }
 
 }  // namespace tetravox::tool

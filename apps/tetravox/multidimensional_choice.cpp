@@ -123,6 +123,24 @@ void override_multidimensional(const MultidimensionalOptions& options, const Fun
   }
 }
 
+std::vector<std::string> check_multidimensional(const MultidimensionalOptions& options, bool shows_volume) {
+  if (shows_volume) return {};
+  const std::pair<bool, const char*> given[] = {
+      {options.variables && !options.variables->empty(), "--variables"},
+      {!options.widgets.empty(), "--widget"},
+      {!options.table.empty(), "--table"},
+      {options.resolution.has_value(), "--table-resolution"},
+      {options.color_array && !options.color_array->name.empty(), "--color-array"},
+      {!options.color_function.empty(), "--color-function"},
+      {options.color_range.has_value(), "--color-range"},
+  };
+  std::vector<std::string> lines;
+  for (const auto& [is_given, option] : given)
+    if (is_given)
+      lines.push_back(std::string(option) + " changes nothing: --volume off leaves nothing to colour by it");
+  return lines;
+}
+
 std::optional<OpticalTable> choose_table(const MultidimensionalOptions& options, const FunctionOptions& function,
                                          const Body& body, Scene& scene) {
   if (!scene.multidimensional) return std::nullopt;

@@ -174,7 +174,7 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.decomposition, named(decomposition_from_name)));
   add(app, "--pixel-correction", "on|off", "project: exact segments, or those that triangles carry (default: on)",
       store(method.use_pixel_correction, parse_switch));
-  add(app, "--mesh-transfer", "order|cells", "vicp: what is sent for a frame (default: order, the mesh stays)",
+  add(app, "--mesh-transfer", "order|cells", "project, vicp: what is sent for a frame (default: order, the mesh stays)",
       store(method.transfer, named(mesh_transfer_from_name)));
   add(app, "--slices", "N", "Source slices: slices along the diagonal of the grid, up to 16384",
       store(method.slices, integer(1, kMostSlices)));
@@ -368,7 +368,8 @@ CommandLine Parser::result() {
     return order_options;
   }
   if (list->parsed()) {
-    if (topic.empty()) throw UsageError("list what? presets, readers, builtins, methods, environments or sorts");
+    if (topic.empty())
+      throw UsageError("list what? presets, readers, builtins, methods, environments, sorts or devices");
     return ListOptions{topic_from_name(topic)};
   }
   throw UsageError("name a command: render, info, histogram, order or list");

@@ -124,8 +124,8 @@ auto with_side(Parse parse) {
 }  // namespace
 
 bool EffectOptions::wants_light() const {
-  return use_headlight || material || gradient || gradient_threshold || is_two_sided || shadows || shadow_resolution ||
-         translucency || translucency_angle || ambient_occlusion || (surfaces && !surfaces->empty());
+  return use_headlight || material || gradient || gradient_threshold || is_two_sided || shadows || ambient_occlusion ||
+         (surfaces && !surfaces->empty());
 }
 
 void add_light(CLI::App& app, EffectOptions& effects) {

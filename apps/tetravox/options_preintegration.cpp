@@ -34,7 +34,7 @@ void add_integrator(CLI::App& app, MethodOptions& method) {
         if (text.find('=') != std::string::npos) method.preintegration.degree = parsed.preintegration.degree;
       });
   add(app, "--preintegration-size", "N[,M]",
-      "Entries along the scalars, and along the length, of table3d and polynomial (default: 128,64)",
+      "Entries along the scalars of table3d and polynomial, and along the length of table3d (default: 128,64)",
       [&tables](const std::string& option, const std::string& text) { parse_size(option, text, tables); });
   add(app, "--preintegration-lengths", "NAME", "How table3d spaces lengths: logarithmic (default), uniform",
       store(tables.length_spacing, named(length_spacing_from_name)));

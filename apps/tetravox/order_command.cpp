@@ -123,9 +123,11 @@ void run_order(const OrderCommandOptions& options) {
   VisibilitySorter sorter(mesh);
   statistics.recover_seconds = seconds_since(last);
   std::span<const std::uint32_t> order;
+  ProgressLine line(false);
   for (int i = 0; i < options.repeat; ++i) {
     throw_if_interrupted();
-    order = sorter.sort(camera, {options.method, options.direction, false, options.threads}, &statistics.sort);
+    order = sorter.sort(camera, {options.method, options.direction, false, options.threads}, &statistics.sort,
+                        line.progress());
     statistics.sort_seconds.push_back(statistics.sort.seconds);
   }
   statistics.sorter_bytes = sorter.bytes();

@@ -144,6 +144,9 @@ void load_body(const RenderOptions& options, Job& job, Talk& talk) {
   for (const std::string& line : check_method(options.method, settings, dataset.is_grid(), job.input.data_path))
     talk.warn("warning: " + line);
   for (const std::string& line : check_effects(options.effects, settings)) talk.warn("warning: " + line);
+  for (const std::string& line :
+       check_multidimensional(options.multidimensional, options.effects.shows_volume.value_or(true)))
+    talk.warn("warning: " + line);
   require_memory(plan_memory(dataset, settings), job.input.data_path);
   statistics.input_bytes = input_bytes(dataset);
 

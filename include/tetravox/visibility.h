@@ -9,6 +9,7 @@
 
 #include "tetravox/camera.h"
 #include "tetravox/mesh.h"
+#include "tetravox/progress.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -86,9 +87,9 @@ class VisibilitySorter {
   /// Where cells hide one another in a circle there is no such order. Then the farthest cell of the circle, by its
   /// centroid, is put behind the others (mpvonc: the relation that closes the circle is left out); the statistics count
   /// what was broken.
-  /// @throws Error (kInvalidArgument): the camera defines no view.
+  /// @throws Error: kInvalidArgument where the camera defines no view; kCancelled, and the next call sorts anew.
   std::span<const std::uint32_t> sort(const Camera& camera, const SortOptions& options = {},
-                                      SortStatistics* statistics = nullptr);
+                                      SortStatistics* statistics = nullptr, const Progress& progress = {});
 
   /// Bytes held, the mesh not counted.
   std::uint64_t bytes() const;
@@ -108,7 +109,8 @@ struct OrderCheckOptions {
 struct OrderReport {
   bool is_permutation = false;  ///< every cell occurs once; where not, nothing else was checked
 
-  std::uint64_t face_pairs = 0;       ///< pairs of cells with a common face that the eye does not see edge-on
+  /// Pairs of cells with a common face that the eye does not see edge-on, both thicker than vertices are rounded.
+  std::uint64_t face_pairs = 0;
   std::uint64_t face_violations = 0;  ///< of these, in the wrong order
 
   std::uint64_t rays = 0;               ///< that meet a cell
@@ -121,7 +123,8 @@ struct OrderReport {
 };
 
 /// Checks an order by brute force: all pairs of cells that share a face, and along every ray all cells that it meets,
-/// by depth. Independent of how the order was made: cells are met by looking at all of them.
+/// by depth. Independent of how the order was made: sides of faces come from the places of vertices alone, and cells
+/// are met by looking at all of them. Shared with the sorters is where the eye is, and how a ray is cut with one cell.
 /// @throws Error (kInvalidArgument): the camera defines no view, or a negative size.
 OrderReport check_order(const PreparedMesh& mesh, const Camera& camera, std::span<const std::uint32_t> order,
                         const OrderCheckOptions& options = {});

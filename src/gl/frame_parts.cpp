@@ -15,17 +15,20 @@ constexpr std::size_t kBytesAtOnce = std::size_t{1} << 28;
 }  // namespace
 
 void require_supported(const RenderSettings& settings) {
+  // An iso-surface is lit: it is what was asked for.
   const std::pair<bool, const char*> unknown[] = {
-      {settings.lighting.is_lit(), "light"},
       {!settings.surfaces.empty(), "iso-surfaces"},
+      {settings.lighting.is_lit(), "light"},
       {!settings.clipping.shapes.empty(), "clipping"},
       {settings.opacity_weight != OpacityWeight::kNone, "opacity weights"},
       {settings.wants_depth, "depths"},
   };
+  const bool is_projected = settings.source == Source::kProject || settings.source == Source::kVicp;
   for (const auto& [is_asked, name] : unknown)
     if (is_asked)
       throw Error(ErrorCode::kUnsupported, "the OpenGL backend does not draw " + std::string(name) +
-                                               " yet: leave them out, or draw with --backend cpu");
+                                               " here yet: draw with --backend cpu" +
+                                               (is_projected ? " --source walk" : ""));
 }
 
 void note_backend(const Context& context, RenderStatistics& statistics) {

@@ -14,6 +14,4 @@ namespace tetravox::gl {
 std::unique_ptr<scene::FrameRenderer> make_mesh_renderer(const PreparedMesh& mesh, std::shared_ptr<Context> context);
 std::unique_ptr<scene::FrameRenderer> make_grid_renderer(const PreparedGrid& grid, std::shared_ptr<Context> context);
 
-std::unique_ptr<scene::FrameRenderer> make_grid_renderer(const PreparedGrid& grid, std::shared_ptr<Context> context);
-
 }  // namespace tetravox::gl

@@ -208,7 +208,8 @@ void IntegratorTables::bind(const RenderSettings& settings, const SegmentTraits&
   block.nodes_per_scalar = table.nodes_per_scalar;
   block.density_per_unit = table.density_per_unit;
   block.units_per_density = table.units_per_density;
-  block.split_threshold = split_threshold_ = 12.0f * scene::segment_tolerance(settings);
+  block.split_threshold = 12.0f * scene::segment_tolerance(settings);
+  split_threshold_ = block.split_threshold;
   block.last_node = table.last_node;
   is_beyond_ = !table.covers_data || segments.may_overshoot;
   block.points_first = control_points_.first;

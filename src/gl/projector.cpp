@@ -45,8 +45,8 @@ std::span<const std::uint32_t> Projector::sort_cells(const ProjectionFrame& fram
   }
   if (!sorter_) sorter_.emplace(mesh_);
   SortStatistics sorted;
-  const std::span<const std::uint32_t> order =
-      sorter_->sort(frame.camera, {.method = method_of(sort), .threads = frame.settings.threads}, &sorted);
+  const std::span<const std::uint32_t> order = sorter_->sort(
+      frame.camera, {.method = method_of(sort), .threads = frame.settings.threads}, &sorted, frame.progress);
   statistics.sort_seconds = sorted.seconds;
   statistics.cycles = sorted.cycles;
   statistics.cyclic_cells = sorted.cyclic_cells;

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <utility>
+#include <tuple>
 
 namespace tetravox::gl {
 namespace {
@@ -19,6 +19,10 @@ constexpr int kLargestRadius = 3;
 constexpr double kStraightOfRange = 5e-4;
 
 bool is_cell(const PreparedGrid& grid) { return grid.data.association == Association::kCell; }
+
+bool is_uneven(const PreparedGrid& grid) {
+  return std::ranges::any_of(grid.data.shape.coordinates, [](const auto& c) { return !c.empty(); });
+}
 
 bool is_constant(const PreparedGrid& grid, const RenderSettings& settings) {
   return settings.filter.kind == FilterKind::kNearest || (is_cell(grid) && !filters_slices(settings));
@@ -37,10 +41,10 @@ void require_half_angle(const RenderSettings& settings) {
     throw Error(ErrorCode::kUnsupported, "half-angle shadows " + std::string(what));
   };
   if (lighting.lights.size() != 1 || lighting.lights[0].kind != LightKind::kDirectional)
-    fail("are those of one directional light: give one, or draw shadows with --backend cpu");
+    fail("are those of one directional light: give one, or draw other shadows with --backend cpu --source march");
   if (settings.slicing.kind != SlicingKind::kView3d)
     fail("cut the 3D texture by planes of their own: choose --source slices=view-3d");
-  if (filters_slices(settings)) fail("know the filters linear and nearest only");
+  if (filters_slices(settings)) fail("know the filters linear and nearest only: choose one of them");
   if (!settings.surfaces.empty()) fail("are those of the volume: leave iso-surfaces out");
 }
 
@@ -69,23 +73,26 @@ void require_filter(const PreparedGrid& grid, const RenderSettings& settings) {
 void require_sliceable(const PreparedGrid& grid, const RenderSettings& settings) {
   const Lighting& lighting = settings.lighting;
   const bool has_shadows = lighting.shadows == ShadowKind::kVolume || lighting.shadows == ShadowKind::kExact;
-  const std::pair<bool, const char*> unknown[] = {
-      {std::ranges::any_of(grid.data.shape.coordinates, [](const auto& c) { return !c.empty(); }), "uneven axes"},
-      {!settings.clipping.shapes.empty(), "clipping"},
-      {settings.opacity_weight != OpacityWeight::kNone, "opacity weights"},
-      {settings.wants_depth, "depths"},
-      {settings.samples_per_voxel > 0.0, "a fixed rate of samples (--slices-per-voxel is theirs)"},
-      {lighting.environment.has_value(), "surroundings"},
-      {lighting.is_lit() && lighting.ambient_occlusion > 0, "ambient occlusion"},
-      {lighting.is_lit() && has_shadows, "these shadows (half-angle are theirs)"},
-      {has_point_light(lighting), "point lights"},
-      {lighting.lights.size() > kMostSliceLights, "more than 8 lights"},
-      {settings.surfaces.size() > kMostSliceSurfaces, "more than 15 iso-surfaces"},
+  const bool is_lit = lighting.is_lit();
+  // With the way round each, where there is one.
+  const std::tuple<bool, const char*, const char*> unknown[] = {
+      {is_uneven(grid), "grids with uneven axes", "choose --source march"},
+      {settings.samples_per_voxel > 0.0, "by a fixed rate of samples", "give --slices-per-voxel instead"},
+      {is_lit && has_shadows, "these shadows", "choose --shadows half-angle"},
+      {!settings.clipping.shapes.empty(), "clipping", nullptr},
+      {settings.opacity_weight != OpacityWeight::kNone, "opacity weights", nullptr},
+      {settings.wants_depth, "depths", nullptr},
+      {lighting.environment.has_value(), "light of surroundings", nullptr},
+      {is_lit && lighting.ambient_occlusion > 0, "ambient occlusion", nullptr},
+      {has_point_light(lighting), "point lights", nullptr},
+      {lighting.lights.size() > kMostSliceLights, "more than 8 lights", "give fewer"},
+      {settings.surfaces.size() > kMostSliceSurfaces, "more than 15 iso-surfaces", "give fewer"},
   };
-  for (const auto& [is_asked, name] : unknown)
+  for (const auto& [is_asked, name, cure] : unknown)
     if (is_asked)
-      throw Error(ErrorCode::kUnsupported,
-                  "slices do not draw " + std::string(name) + ": leave them out, or draw with --backend cpu");
+      throw Error(ErrorCode::kUnsupported, "slices do not draw " + std::string(name) + ": " +
+                                               (cure ? std::string(cure) + ", or " : "") +
+                                               "draw with --backend cpu --source march");
   if (!settings.surfaces.empty() && is_constant(grid, settings))
     throw Error(ErrorCode::kInvalidArgument, "iso-surfaces need a continuous field: this one is constant in each cell");
   require_filter(grid, settings);

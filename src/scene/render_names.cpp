@@ -43,13 +43,16 @@ constexpr std::array<Name<SlabShape>, 2> kSlabShapes{
 constexpr std::array<Name<CellSort>, 5> kCellSorts{
     {{CellSort::kCentroid, "centroid", "cells by the distance of centroids: wrong now and then"},
      {CellSort::kMpvo, "mpvo", "cells by shared faces: exact for convex meshes (Williams 1992)"},
-     {CellSort::kMpvonc, "mpvonc", "his heuristic for non-convex meshes"},
+     {CellSort::kMpvonc, "mpvonc", "his heuristic for non-convex meshes: wrong now and then (Williams 1992)"},
      {CellSort::kXmpvo, "xmpvo",
       "exact for every mesh without cycles (Silva, Mitchell, Williams 1998); used by default"},
-     {CellSort::kExact, "exact", "the segments of each pixel by their depth: right for cyclic meshes, too"}}};
+     {CellSort::kExact, "exact",
+      "the segments of each pixel by their depth: right for cyclic meshes, too (Carpenter 1984; Yang, Hensley, Gruen, "
+      "Thibieroz 2010)"}}};
 
 constexpr std::array<Name<Decomposition>, 2> kDecompositions{
-    {{Decomposition::kCpu, "cpu", "by threads"}, {Decomposition::kGpu, "gpu", "by a compute shader"}}};
+    {{Decomposition::kCpu, "cpu", "by threads (Shirley and Tuchman 1990)"},
+     {Decomposition::kGpu, "gpu", "by a compute shader (after Wylie, Moreland, Fisk, Crossno 2002)"}}};
 
 constexpr std::array<Name<MeshTransfer>, 2> kMeshTransfers{
     {{MeshTransfer::kOrder, "order", "the order of cells; the mesh stays in graphics memory (Espinha and Celes 2005)"},
@@ -61,9 +64,11 @@ constexpr std::array<Name<Integrator>, 7> kIntegrators{
       "2004)"},
      {Integrator::kPartial, "partial",
       "exact for piecewise linear functions (Moreland and Angel 2004; Espinha and Celes 2005)"},
-     {Integrator::kPost, "post", "post-classification: point samples along each segment, for comparison"},
+     {Integrator::kPost, "post",
+      "post-classification: point samples along each segment; for comparison (Engel and Ertl 2002)"},
      {Integrator::kPre, "pre",
-      "pre-classification: colours and extinctions at the values, interpolated; for comparison"},
+      "pre-classification: colours and extinctions at the values, interpolated; for comparison (Wittenbrink, "
+      "Malzbender, Goss 1998)"},
      {Integrator::kTable3d, "table3d",
       "full pre-integration in a table over both scalars and the length; for comparison (Roettger, Kraus, Ertl 2000)"},
      {Integrator::kPolynomial, "polynomial",
@@ -109,8 +114,10 @@ constexpr std::array<Name<LightKind>, 3> kLightKinds{{{LightKind::kHeadlight, "h
 
 constexpr std::array<Name<ShadowKind>, 4> kShadowKinds{
     {{ShadowKind::kNone, "none", "light reaches everything"},
-     {ShadowKind::kVolume, "volume", "optical depth towards each light, on a lattice that it sees"},
-     {ShadowKind::kExact, "exact", "a ray from each light to each place that is lit: sharp, slow, for stills"},
+     {ShadowKind::kVolume, "volume",
+      "optical depth towards each light, on a lattice that it sees (after Behrens and Ratering 1998)"},
+     {ShadowKind::kExact, "exact",
+      "a ray from each light to each place that is lit: sharp, slow, for stills (Kajiya and Von Herzen 1984)"},
      {ShadowKind::kHalfAngle, "half-angle",
       "source slices: slices half way between view and light (Kniss, Premoze, Hansen, Ebert 2002)"}}};
 
@@ -205,6 +212,8 @@ MeshTransfer mesh_transfer_from_name(const std::string& name) {
   return enumerator_from_name(kMeshTransfers, name, "mesh transfer");
 }
 std::vector<std::pair<std::string, std::string>> cell_sort_names() { return list_names(kCellSorts); }
+std::vector<std::pair<std::string, std::string>> decomposition_names() { return list_names(kDecompositions); }
+std::vector<std::pair<std::string, std::string>> mesh_transfer_names() { return list_names(kMeshTransfers); }
 std::string name_of(OpacityWeight weight) { return name_of_enumerator(kOpacityWeights, weight); }
 std::string name_of(GradientMethod method) { return name_of_enumerator(kGradientMethods, method); }
 std::string name_of(LightKind kind) { return name_of_enumerator(kLightKinds, kind); }

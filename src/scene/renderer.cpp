@@ -120,12 +120,15 @@ void require_clip_volumes(const Clipping& clipping, const std::vector<const Prep
 void require_source(const RenderSettings& settings, const std::vector<Source>& sources) {
   if (settings.lighting.shadows == ShadowKind::kHalfAngle && settings.source != Source::kSlices)
     throw Error(ErrorCode::kUnsupported,
-                "shadows 'half-angle' are for grids by the source 'slices': choose it, or 'volume' or 'exact'");
+                "shadows 'half-angle' are for grids by the source 'slices' of --backend gl: choose both, or 'volume' "
+                "or 'exact'");
   if (!settings.source || std::ranges::find(sources, *settings.source) != sources.end()) return;
   const bool is_grid = sources.front() == Source::kMarch;
-  std::string names;
-  for (const Source source : sources) names += (names.empty() ? "'" : ", '") + name_of(source) + "'";
-  throw Error(ErrorCode::kInvalidArgument, "source '" + name_of(*settings.source) + "' does not draw " +
+  const Source asked = *settings.source;
+  const bool is_of_grids = asked == Source::kMarch || asked == Source::kSlices;
+  std::string names = is_of_grids == is_grid ? "--backend gl for it, or " : "";
+  for (const Source source : sources) names += (source == sources.front() ? "'" : ", '") + name_of(source) + "'";
+  throw Error(ErrorCode::kInvalidArgument, "source '" + name_of(asked) + "' does not draw " +
                                                (is_grid ? "grids" : "meshes") + " here: choose " + names +
                                                ", or leave it open");
 }

@@ -33,11 +33,12 @@ bool meets(const PicturePolygon& polygon, const Point2& lower, const Point2& upp
 /// Finds the pairs in a part of the picture.
 class PairSearch {
  public:
-  PairSearch(const PreparedMesh& mesh, const BoundaryPicture& picture, const GapTest& test,
+  PairSearch(const PreparedMesh& mesh, const BoundaryPicture& picture, const GapTest& test, const Progress& progress,
              std::vector<GapRelation>& found)
-      : mesh_(mesh), picture_(picture), test_(test), found_(found) {}
+      : mesh_(mesh), picture_(picture), test_(test), progress_(progress), found_(found) {}
 
   void search(Part& part, int level) {
+    support::throw_if_cancelled(progress_);
     if (!drop_ordered(part)) return;
     const std::size_t pairs = part.exits.size() * part.entries.size();
     if (pairs <= kFewPairs || level >= kMostLevels) {
@@ -100,6 +101,7 @@ class PairSearch {
   const PreparedMesh& mesh_;
   const BoundaryPicture& picture_;
   const GapTest& test_;
+  const Progress& progress_;
   std::vector<GapRelation>& found_;
 };
 
@@ -122,12 +124,12 @@ Part whole_picture(const BoundaryPicture& picture) {
 }
 
 void search_picture(const PreparedMesh& mesh, std::span<const SortedCell> cells, const BoundaryPicture& picture,
-                    std::vector<GapRelation>& relations) {
+                    const Progress& progress, std::vector<GapRelation>& relations) {
   const GapTest test(mesh, cells, picture);
   std::vector<Part> parts;
   parts.push_back(whole_picture(picture));
   for (int level = 0; level < kSharedLevels; ++level) {
-    PairSearch search(mesh, picture, test, relations);
+    PairSearch search(mesh, picture, test, progress, relations);
     std::vector<Part> next;
     for (Part& part : parts)
       if (search.drop_ordered(part))
@@ -136,7 +138,7 @@ void search_picture(const PreparedMesh& mesh, std::span<const SortedCell> cells,
   }
   std::vector<std::vector<GapRelation>> found(parts.size());
   support::parallel_chunks(parts.size(), 1, [&](std::size_t i, std::size_t last) {
-    for (; i < last; ++i) PairSearch(mesh, picture, test, found[i]).search(parts[i], kSharedLevels);
+    for (; i < last; ++i) PairSearch(mesh, picture, test, progress, found[i]).search(parts[i], kSharedLevels);
   });
   for (const auto& part : found) relations.insert(relations.end(), part.begin(), part.end());
 }
@@ -161,11 +163,12 @@ void remove_contradictions(const PreparedMesh& mesh, std::span<const SortedCell>
 }  // namespace
 
 std::vector<GapRelation> find_gap_relations(const PreparedMesh& mesh, std::span<const SortedCell> cells,
-                                            std::span<const CellSides> sides, const ViewPoint& view, double radius) {
+                                            std::span<const CellSides> sides, const ViewPoint& view, double radius,
+                                            const Progress& progress) {
   std::vector<GapRelation> relations;
   for (const PicturePlane& plane : choose_planes(view, radius)) {
     const BoundaryPicture picture = project_boundary(mesh, cells, sides, plane);
-    search_picture(mesh, cells, picture, relations);
+    search_picture(mesh, cells, picture, progress, relations);
   }
   tbb::parallel_sort(relations.begin(), relations.end());
   relations.erase(std::unique(relations.begin(), relations.end()), relations.end());

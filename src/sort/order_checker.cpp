@@ -1,8 +1,7 @@
 /// Checks orders by brute force.
 
+#include "src/mesh/cell_vertices.h"
 #include "src/sort/cell_interval.h"
-#include "src/sort/face_sides.h"
-#include "src/sort/sorted_cells.h"
 #include "src/sort/view_point.h"
 #include "src/support/threads.h"
 #include "tetravox/error.h"
@@ -12,6 +11,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -19,10 +19,9 @@
 namespace tetravox {
 namespace {
 
-using sort::CellSides;
+using mesh::CellVertices;
 using sort::Interval;
 using sort::PixelRays;
-using sort::SortedCell;
 using sort::operator+, sort::operator-, sort::operator*;
 
 constexpr std::size_t kGrain = 1 << 12;
@@ -49,6 +48,14 @@ struct PixelRange {
   int first = 0, last = -1;
 };
 
+bool is_known(const CellVertices& cell) { return cell[0] != kNoCell; }
+
+std::array<Vector3, 4> corners_of(const PreparedMesh& mesh, const CellVertices& cell) {
+  std::array<Vector3, 4> corners;
+  for (std::size_t i = 0; i < 4; ++i) corners[i] = sort::position_of(mesh.vertices[cell[i]]);
+  return corners;
+}
+
 /// Place of each cell, counted from the back; empty where the order is no permutation.
 std::vector<std::uint32_t> find_places(std::span<const std::uint32_t> order, std::size_t cells,
                                        SortDirection direction) {
@@ -61,7 +68,45 @@ std::vector<std::uint32_t> find_places(std::span<const std::uint32_t> order, std
   return places;
 }
 
-void check_faces(const PreparedMesh& mesh, std::span<const SortedCell> cells, const sort::ViewPoint& view,
+/// The side of the plane of a, b, c that a place lies on, +1 or -1; 0 where vertices, which are rounded to float, leave
+/// it open. `arm`: from a to the place, a vertex as well.
+int find_side(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& arm) {
+  constexpr double kFloatRounding = 4.0 * 6e-8;  // of differences of coordinates up to 1, twice
+  const Vector3 u = b - a, v = c - a;
+  const double lengths[] = {sort::norm(u), sort::norm(v), sort::norm(arm)};
+  const double volume = sort::dot(sort::cross(u, v), arm);
+  const double bound = kFloatRounding * (lengths[0] * lengths[1] + lengths[0] * lengths[2] + lengths[1] * lengths[2]);
+  return volume > bound ? 1 : volume < -bound ? -1 : 0;
+}
+
+/// The same of the eye, 0 where it sees the face edge-on: whichever vertex one looks from, to within rounding to
+/// double.
+int find_side_of_eye(const Vector3& a, const Vector3& b, const Vector3& c, const sort::ViewPoint& view) {
+  constexpr double kRounding = 4e-14;
+  double longest = 0.0, farthest = 0.0;
+  for (const Vector3& edge : {b - a, c - a, c - b}) longest = std::max(longest, sort::norm(edge));
+  for (const Vector3& corner : {a, b, c}) farthest = std::max(farthest, sort::norm(view.towards_eye(corner)));
+  const double volume = sort::dot(sort::cross(b - a, c - a), view.towards_eye(a));
+  const double bound = kRounding * longest * longest * farthest;
+  return volume > bound ? 1 : volume < -bound ? -1 : 0;
+}
+
+/// Of a cell and the neighbour across its face of a rank: the one in front, `kNoCell` where that is not certain.
+std::uint32_t find_front(const PreparedMesh& mesh, std::span<const CellVertices> cells, std::uint32_t cell,
+                         std::size_t rank, const sort::ViewPoint& view) {
+  const CellVertices& ids = cells[cell];
+  const std::uint32_t neighbour = mesh.cells[cell].neighbours[rank];
+  const std::array<std::uint32_t, 3> face{ids[(rank + 1) & 3], ids[(rank + 2) & 3], ids[(rank + 3) & 3]};
+  const std::uint32_t opposite = mesh.cells[neighbour].vertex_xor ^ face[0] ^ face[1] ^ face[2];
+  const auto at = [&](std::uint32_t id) { return sort::position_of(mesh.vertices[id]); };
+  const Vector3 a = at(face[0]), b = at(face[1]), c = at(face[2]);
+  const int own = find_side(a, b, c, at(ids[rank]) - a), other = find_side(a, b, c, at(opposite) - a);
+  const int eye = find_side_of_eye(a, b, c, view);
+  if (own * other >= 0 || eye == 0) return kNoCell;
+  return eye == own ? cell : neighbour;
+}
+
+void check_faces(const PreparedMesh& mesh, std::span<const CellVertices> cells, const sort::ViewPoint& view,
                  std::span<const std::uint32_t> places, OrderReport& report) {
   struct Count {
     std::uint64_t pairs = 0, violations = 0;
@@ -69,13 +114,15 @@ void check_faces(const PreparedMesh& mesh, std::span<const SortedCell> cells, co
   tbb::enumerable_thread_specific<Count> counts;
   support::parallel_chunks(cells.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     Count& count = counts.local();
-    for (std::size_t cell = begin; cell < end; ++cell) {
-      const CellSides sides = sort::find_sides(mesh, cells[cell], view);
-      for (std::size_t rank = 0; rank < 4; ++rank) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto cell = static_cast<std::uint32_t>(i);
+      for (std::size_t rank = 0; rank < 4 && is_known(cells[cell]); ++rank) {
         const std::uint32_t neighbour = mesh.cells[cell].neighbours[rank];
-        if (neighbour == kNoCell || sides[rank] != sort::Side::kFront) continue;
+        if (neighbour == kNoCell || neighbour < cell) continue;
+        const std::uint32_t front = find_front(mesh, cells, cell, rank, view);
+        if (front == kNoCell) continue;
         ++count.pairs;
-        count.violations += places[neighbour] < places[cell];
+        count.violations += places[front] < places[front == cell ? neighbour : cell];
       }
     }
   });
@@ -88,7 +135,7 @@ void check_faces(const PreparedMesh& mesh, std::span<const SortedCell> cells, co
 /// Finds the cells on the rays of some rows.
 class SegmentFinder {
  public:
-  SegmentFinder(const PreparedMesh& mesh, std::span<const SortedCell> cells, std::span<const std::uint32_t> places,
+  SegmentFinder(const PreparedMesh& mesh, std::span<const CellVertices> cells, std::span<const std::uint32_t> places,
                 const PixelRays& rays, int first_row, int last_row)
       : mesh_(mesh), cells_(cells), places_(places), rays_(rays), first_row_(first_row), last_row_(last_row) {}
 
@@ -98,7 +145,7 @@ class SegmentFinder {
     tbb::enumerable_thread_specific<std::uint64_t> thin_counts(std::uint64_t{0});
     support::parallel_chunks(cells_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t cell = begin; cell < end; ++cell)
-        if (cells_[cell].is_known()) find_in(cell, found.local(), thin_counts.local());
+        if (is_known(cells_[cell])) find_in(cell, found.local(), thin_counts.local());
     });
     std::vector<Segment> segments;
     for (const auto& part : found) segments.insert(segments.end(), part.begin(), part.end());
@@ -109,7 +156,7 @@ class SegmentFinder {
 
  private:
   void find_in(std::size_t cell, std::vector<Segment>& found, std::uint64_t& thin) const {
-    const auto corners = sort::corners_of(mesh_, cells_[cell]);
+    const auto corners = corners_of(mesh_, cells_[cell]);
     PixelRange columns, rows;
     find_pixels(corners, columns, rows);
     const double least = rays_.is_orthographic ? -std::numeric_limits<double>::max() : 0.0;
@@ -186,7 +233,7 @@ class SegmentFinder {
   }
 
   const PreparedMesh& mesh_;
-  std::span<const SortedCell> cells_;
+  std::span<const CellVertices> cells_;
   std::span<const std::uint32_t> places_;
   const PixelRays& rays_;
   int first_row_, last_row_;
@@ -227,7 +274,7 @@ void check_ray(std::span<const Segment> segments, OrderReport& report) {
   report.intersecting_rays += intersections > 0;
 }
 
-void check_rays(const PreparedMesh& mesh, std::span<const SortedCell> cells, std::span<const std::uint32_t> places,
+void check_rays(const PreparedMesh& mesh, std::span<const CellVertices> cells, std::span<const std::uint32_t> places,
                 const PixelRays& rays, OrderReport& report) {
   const int rows_at_a_time = std::max(1, static_cast<int>(kPixelsAtATime / static_cast<std::size_t>(rays.width)));
   for (int row = 0; row < rays.height; row += rows_at_a_time) {
@@ -254,7 +301,7 @@ OrderReport check_order(const PreparedMesh& mesh, const Camera& camera, std::spa
     const std::vector<std::uint32_t> places = find_places(order, mesh.cells.size(), options.direction);
     report.is_permutation = places.size() == order.size() && order.size() == mesh.cells.size();
     if (!report.is_permutation) return;
-    const std::vector<SortedCell> cells = sort::find_sorted_cells(mesh);
+    const std::vector<CellVertices> cells = mesh::find_cell_vertices(mesh);
     check_faces(mesh, cells, view, places, report);
     if (options.width == 0 || options.height == 0) return;
     check_rays(mesh, cells, places, sort::make_pixel_rays(mesh, camera, options.width, options.height), report);

@@ -77,13 +77,15 @@ struct VisibilitySorter::State {
   explicit State(const PreparedMesh& prepared)
       : mesh(prepared), cells(sort::find_sorted_cells(prepared)), radius(find_radius(prepared)) {}
 
-  OrderReuse bring_up_to_date(const ViewPoint& view, const SortOptions& options, SortStatistics& statistics);
-  bool find_relations(const ViewPoint& view, SortMethod method, SortStatistics& statistics);
+  OrderReuse bring_up_to_date(const ViewPoint& view, const SortOptions& options, SortStatistics& statistics,
+                              const Progress& progress);
+  bool find_relations(const ViewPoint& view, SortMethod method, SortStatistics& statistics, const Progress& progress);
   void turn(SortDirection direction);
 };
 
 /// Finds all that the method goes by; true where it came out as in the call before.
-bool VisibilitySorter::State::find_relations(const ViewPoint& view, SortMethod method, SortStatistics& statistics) {
+bool VisibilitySorter::State::find_relations(const ViewPoint& view, SortMethod method, SortStatistics& statistics,
+                                             const Progress& progress) {
   support::Timer timer;
   sides.swap(last_sides);
   gaps.swap(last_gaps);
@@ -93,13 +95,14 @@ bool VisibilitySorter::State::find_relations(const ViewPoint& view, SortMethod m
   sort::find_cell_sides(mesh, cells, view, sides);
   if (method == SortMethod::kMpvonc) roots = find_roots(mesh, view);
   statistics.relation_seconds = timer.seconds();
-  if (method == SortMethod::kXmpvo) gaps = sort::find_gap_relations(mesh, cells, sides, view, radius);
+  support::throw_if_cancelled(progress);
+  if (method == SortMethod::kXmpvo) gaps = sort::find_gap_relations(mesh, cells, sides, view, radius, progress);
   statistics.boundary_seconds = timer.seconds() - statistics.relation_seconds;
   return sides == last_sides && gaps == last_gaps && roots == last_roots;
 }
 
 OrderReuse VisibilitySorter::State::bring_up_to_date(const ViewPoint& view, const SortOptions& options,
-                                                     SortStatistics& statistics) {
+                                                     SortStatistics& statistics, const Progress& progress) {
   const bool is_same_method = options.use_last_order && last_method == options.method;
   if (is_same_method && last_view == view) return OrderReuse::kSameView;
   last_method.reset();  // until all is done
@@ -111,7 +114,8 @@ OrderReuse VisibilitySorter::State::bring_up_to_date(const ViewPoint& view, cons
     last_direction = SortDirection::kBackToFront;
     return OrderReuse::kNone;
   }
-  const bool is_same = find_relations(view, options.method, statistics);
+  const bool is_same = find_relations(view, options.method, statistics, progress);
+  support::throw_if_cancelled(progress);
   const sort::Relations relations{&mesh, cells, sides, gaps};
   // How cycles are broken depends on distances, too.
   if (is_same_method && last_cycles.cycles == 0) {
@@ -145,14 +149,14 @@ VisibilitySorter::VisibilitySorter(VisibilitySorter&&) noexcept = default;
 VisibilitySorter& VisibilitySorter::operator=(VisibilitySorter&&) noexcept = default;
 
 std::span<const std::uint32_t> VisibilitySorter::sort(const Camera& camera, const SortOptions& options,
-                                                      SortStatistics* statistics) {
+                                                      SortStatistics* statistics, const Progress& progress) {
   const support::Timer timer;
   name_of(options.method);  // throws for what is no method
   const ViewPoint view = sort::make_view_point(state_->mesh, camera);
   SortStatistics measured;
   support::with_threads(options.threads, [&] {
     measured.threads = support::hardware_threads();
-    measured.reuse = state_->bring_up_to_date(view, options, measured);
+    measured.reuse = state_->bring_up_to_date(view, options, measured, progress);
     state_->last_method = options.method;
     state_->turn(options.direction);
   });

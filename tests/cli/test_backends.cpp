@@ -72,9 +72,91 @@ TEST_F(Backends, TablesAreMadeOnTheDeviceOrByTheCpu) {
 }
 
 TEST_F(Backends, OptionsOfOpenGlSayThatTheyChangeNothingElsewhere) {
-  const Result result = run({"render", "builtin:sphere", "--entry-order", "peeling", "--resolution", "20,20"});
+  const Result result =
+      run({"render", "builtin:sphere", "--entry-order", "peeling", "--gl-device", "0", "--resolution", "20,20"});
   EXPECT_EQ(result.code, 0);
-  EXPECT_NE(result.err.find("--entry-order changes nothing"), std::string::npos) << result.err;
+  for (const char* option : {"--entry-order", "--gl-device"})
+    EXPECT_NE(result.err.find(std::string(option) + " changes nothing"), std::string::npos) << result.err;
+}
+
+TEST_F(Backends, OptionsThatChangeNothingThereAreSaid) {
+  if (!has_device()) GTEST_SKIP() << "there is no device with OpenGL 4.5 by EGL";
+  ASSERT_EQ(run({"render", "builtin:sphere", "--resolution", "8,8", "--statistics", "s.json"}).code, 0);
+  const auto instruction_set = nlohmann::json::parse(read("s.json")).at("isa").get<std::string>();
+  struct Case {
+    std::vector<std::string> arguments;  ///< the last but one is the option that is looked at
+    bool is_used = false;
+  };
+  const std::vector<std::string> mesh{"builtin:sphere"}, grid{"builtin:hydrogen?size=12"};
+  const std::vector<Case> on_meshes = {
+      {{"--instruction-set", instruction_set}},
+      {{"--entry-order", "peeling"}, true},
+      {{"--source", "project", "--entry-order", "peeling"}},
+      {{"--source", "project", "--early-ray-termination", "off"}},
+      {{"--source", "vicp", "--sort", "exact", "--early-ray-termination", "off"}, true},
+      {{"--mesh-transfer", "cells"}},
+      {{"--source", "vicp", "--mesh-transfer", "cells"}, true},
+      {{"--source", "project", "--mesh-transfer", "cells"}, true},
+      {{"--source", "vicp", "--decomposition", "gpu"}},
+      {{"--integrator", "table3d", "--preintegration-device", "gpu", "--preintegration-incremental", "off"}},
+  };
+  const std::vector<Case> on_grids = {
+      {{"--entry-order", "peeling"}},
+      {{"--source", "slices", "--early-ray-termination", "off"}},
+      {{"--source", "slices", "--slabs", "linear"}, true},
+      {{"--source", "slices", "--classification", "post", "--slabs", "linear"}},
+      {{"--source", "slices", "--classification", "post", "--samples", "4"}},
+      {{"--source", "slices", "--slices-per-voxel", "1"}, true},
+      {{"--source", "slices", "--slices", "20", "--slices-per-voxel", "1"}},
+      {{"--source", "slices=object-2d", "--slices-per-voxel", "1"}},
+      {{"--source", "slices=object-2d", "--slices", "20"}},
+      {{"--source", "slices=object-2d-interpolated", "--slices", "20"}, true},
+      {{"--source", "slices", "--integrator", "partial", "--tolerance", "0.1"}},
+      {{"--source", "slices", "--tolerance", "0.1"}, true},
+  };
+  const auto check = [&](const std::vector<std::string>& input, const Case& tried) {
+    std::vector<std::string> arguments{"render", "--backend", "gl", "--resolution", "8,8", "-o", "a.npy"};
+    arguments.insert(arguments.end(), input.begin(), input.end());
+    arguments.insert(arguments.end(), tried.arguments.begin(), tried.arguments.end());
+    const Result result = run(arguments);
+    const std::string option = tried.arguments[tried.arguments.size() - 2];
+    EXPECT_EQ(result.code, 0) << result.err;
+    if (tried.is_used)
+      EXPECT_EQ(result.err, "") << option;
+    else
+      EXPECT_NE(result.err.find(option + " changes nothing: "), std::string::npos) << option << ": " << result.err;
+  };
+  for (const Case& tried : on_meshes) check(mesh, tried);
+  for (const Case& tried : on_grids) check(grid, tried);
+}
+
+TEST_F(Backends, RefusalsNameWhatHelps) {
+  const std::vector<std::string> plain{"--resolution", "8,8", "-o", "a.npy"};
+  const auto draw = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "render");
+    arguments.insert(arguments.end(), plain.begin(), plain.end());
+    return run(arguments);
+  };
+  for (const std::string source : {"project", "vicp"})
+    expect_error(draw({"builtin:sphere", "--source", source}), 1, {"'" + source + "'", "--backend gl", "'walk'"});
+  expect_error(draw({"builtin:hydrogen", "--source", "slices"}), 1, {"'slices'", "--backend gl", "'march'"});
+  expect_error(draw({"builtin:hydrogen", "--shadows", "half-angle"}), 1, {"'slices'", "--backend gl"});
+  if (!has_device()) GTEST_SKIP() << "there is no device with OpenGL 4.5 by EGL";
+  expect_error(draw({"builtin:sphere", "--backend", "gl", "--isosurface", "0.5"}), 1,
+               {"iso-surfaces", "--backend cpu"});
+  expect_error(draw({"builtin:sphere", "--backend", "gl", "--source", "vicp", "--shade"}), 1,
+               {"light", "--backend cpu --source walk"});
+  const std::vector<std::string> slices{"builtin:hydrogen", "--backend", "gl", "--source", "slices"};
+  const auto slice = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), slices.begin(), slices.end());
+    return draw(arguments);
+  };
+  expect_error(slice({"--samples-per-voxel", "2"}), 1, {"fixed rate", "--slices-per-voxel"});
+  expect_error(slice({"--clip-plane", "0,0,0,1,0,0"}), 1, {"clipping", "--backend cpu --source march"});
+  expect_error(slice({"--shade", "--shadows", "volume"}), 1, {"these shadows", "half-angle"});
+  // What is named helps.
+  EXPECT_EQ(draw({"builtin:hydrogen", "--backend", "cpu", "--source", "march", "--clip-plane", "0,0,0,1,0,0"}).code, 0);
+  EXPECT_EQ(draw({"builtin:sphere", "--backend", "gl", "--source", "vicp"}).code, 0);
 }
 
 }  // namespace

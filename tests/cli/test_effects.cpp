@@ -248,6 +248,13 @@ TEST_F(Effects, WhatChangesNothingIsSaid) {
   EXPECT_NE(warning({"--one-sided"}).find("--isosurface"), std::string::npos);
   EXPECT_NE(warning({"--environment-rotation", "3"}).find("--environment"), std::string::npos);
   EXPECT_NE(warning({"--environment", "builtin:sky", "--shadows", "volume"}).find("--shadows"), std::string::npos);
+  EXPECT_NE(warning({"--shade", "--translucency", "0.5"}).find("--translucency"), std::string::npos);
+  EXPECT_NE(warning({"--shade", "--translucency-angle", "9"}).find("--shadows half-angle"), std::string::npos);
+  EXPECT_NE(warning({"--shade", "--shadow-resolution", "9"}).find("--shadow-resolution"), std::string::npos);
+  EXPECT_NE(warning({"--volume", "off", "--variables", "gradient"}).find("--variables changes nothing"),
+            std::string::npos);
+  EXPECT_NE(warning({"--volume", "off", "--color-array", "distance"}).find("--color-array changes nothing"),
+            std::string::npos);
   EXPECT_NE(warning({"--clip-combine", "union"}).find("--clip-combine"), std::string::npos);
   EXPECT_NE(warning({"--opacity-weight-scale", "2"}).find("--opacity-weight-scale"), std::string::npos);
   EXPECT_NE(warning({"--clip-box", "100,101,100,101,100,101"}).find("clipping keeps nothing"), std::string::npos);

@@ -119,6 +119,14 @@ TEST_F(Grids, OptionsWithoutEffectAreWarnedOf) {
   expect_warning(mesh({"--samples", "4"}), "--samples changes nothing");
   expect_warning(mesh({"--integrator", "partial", "--tolerance", "0.1"}), "--tolerance changes nothing");
   expect_warning(draw("a.png", {"--samples", "4"}), "--samples changes nothing");
+  const std::vector<std::string> fixed{"--integrator", "post", "--samples-per-voxel", "2"};
+  const auto draw_fixed = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), fixed.begin(), fixed.end());
+    return draw("a.png", more);
+  };
+  expect_warning(draw_fixed({"--samples", "4"}), "--samples changes nothing: --samples-per-voxel");
+  expect_warning(draw_fixed({"--early-ray-termination", "off", "--tolerance", "0.1"}), "--tolerance changes nothing");
+  EXPECT_EQ(draw_fixed({"--tolerance", "0.1"}).err, "") << "rays end by it";
   EXPECT_EQ(mesh({"--integrator", "post", "--samples", "4"}).err, "");
   EXPECT_EQ(mesh({"--tolerance", "0.01"}).err, "");
   EXPECT_EQ(draw("a.png", {"--tolerance", "0.01"}).err, "");

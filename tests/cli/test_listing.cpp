@@ -38,10 +38,30 @@ TEST_F(Listing, Topics) {
   expect_text({"list", "environments"}, {"builtin:studio", "builtin:sky", "builtin:room"});
   expect_text({"list", "sorts"},
               {"centroid", "mpvo", "mpvonc", "xmpvo", "Williams 1992", "Silva, Mitchell, Williams 1998"});
-  expect_text({"list", "methods"},
-              {"walk", "antiderivative", "partial", "post", "table3d", "polynomial=N", "cylindrical", "2000)",
-               "Gradients (--gradient)", "central", "Shadows (--shadows)", "exact",
-               "Opacity weights (--opacity-weight)", "scalar-difference", "Instruction sets"});
+  expect_text({"list", "methods"}, {"walk",
+                                    "antiderivative",
+                                    "partial",
+                                    "post",
+                                    "table3d",
+                                    "polynomial=N",
+                                    "cylindrical",
+                                    "2000)",
+                                    "Gradients (--gradient)",
+                                    "central",
+                                    "Shadows (--shadows)",
+                                    "exact",
+                                    "Opacity weights (--opacity-weight)",
+                                    "scalar-difference",
+                                    "Instruction sets",
+                                    "Where projected cells become triangles (--decomposition)",
+                                    "a compute shader",
+                                    "What of the mesh is sent for a frame (--mesh-transfer)",
+                                    "Espinha and Celes 2005",
+                                    "Wittenbrink",
+                                    "Williams 1992",
+                                    "Carpenter 1984",
+                                    "Behrens and Ratering 1998"});
+  expect_error(run({"list"}), 2, {"list what?", "methods", "sorts or devices"});
 }
 
 TEST_F(Listing, InfoOfAFile) {

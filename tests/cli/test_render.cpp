@@ -93,11 +93,16 @@ TEST_F(Render, TablesOfRayIntegrals) {
     EXPECT_GT(json.at("seconds").at("transfer_function").get<double>(), 0.0);
     EXPECT_GT(json.at("bytes").at("frame").get<std::uint64_t>(), 0u);
   }
-  const Result result = run({"render", "builtin:sphere", "--preintegration-planes", "9", "--resolution", "16,16"});
-  EXPECT_EQ(result.code, 0);
-  EXPECT_NE(result.err.find("--preintegration-planes changes nothing: it is for --integrator cylindrical"),
-            std::string::npos)
-      << result.err;
+  const auto expect_warning = [&](std::vector<std::string> more, const std::string& text) {
+    more.insert(more.begin(), {"render", "builtin:sphere", "--resolution", "16,16"});
+    const Result result = run(more);
+    EXPECT_EQ(result.code, 0);
+    EXPECT_NE(result.err.find(text), std::string::npos) << result.err;
+  };
+  expect_warning({"--preintegration-planes", "9"},
+                 "--preintegration-planes changes nothing: it is for --integrator cylindrical");
+  expect_warning({"--integrator", "polynomial=1", "--preintegration-size", "20,30"},
+                 "the second number of --preintegration-size changes nothing: it is for --integrator table3d");
 }
 
 TEST_F(Render, OptionsChangeThePicture) {

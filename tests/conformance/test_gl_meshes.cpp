@@ -130,6 +130,11 @@ TEST(GlMesh, FramesDoNotDependOnThoseBefore) {
     RenderSettings large = tests::make_settings(Integrator::kAntiderivative, 150, 110);
     large.entry_order = order;
     gl.render(scene.camera("inside"), large);
+    for (const Source source : {Source::kVicp, Source::kProject}) {
+      large.source = source;
+      large.projection.sort = order == EntryOrder::kLists ? CellSort::kExact : CellSort::kXmpvo;
+      gl.render(scene.camera("inside"), large);
+    }
   }
   gl.set_transfer_function(scene.function("random"));
   EXPECT_TRUE(tests::images_equal(gl.render(scene.camera("outside"), small), first));

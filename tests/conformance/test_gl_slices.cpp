@@ -237,14 +237,20 @@ TEST(GlSlices, FramesDoNotDependOnThoseBefore) {
   Renderer gl = make_gl_renderer(scene.grid);
   gl.set_transfer_function(scene.function("random"));
   const RenderSettings small = slices_of(SlicingKind::kStripes2d, 30);
-  const Image first = gl.render(scene.camera("outside"), small);
+  RenderSettings marched = small;
+  marched.source = Source::kMarch;
+  const Image first = gl.render(scene.camera("outside"), small),
+              first_marched = gl.render(scene.camera("outside"), marched);
   gl.set_transfer_function(scene.function("thick"));
   RenderSettings large = slices_of(SlicingKind::kView3d, 60);
   large.width = 90;
   large.filter.kind = FilterKind::kBspline;
   gl.render(scene.camera("inside"), large);
+  large.source = Source::kMarch;
+  gl.render(scene.camera("inside"), large);
   gl.set_transfer_function(scene.function("random"));
   EXPECT_TRUE(tests::images_equal(gl.render(scene.camera("outside"), small), first));
+  EXPECT_TRUE(tests::images_equal(gl.render(scene.camera("outside"), marched), first_marched));
 }
 
 TEST(GlSlices, StatisticsSayWhatWasDrawn) {

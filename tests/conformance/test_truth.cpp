@@ -1,4 +1,4 @@
-/// Every mesh scene of the shared exact pictures, read from its file and drawn.
+/// Every scene of the shared exact pictures, read from its file and drawn.
 
 #ifdef TETRAVOX_WITH_GL
 #include "tests/common/gl.h"
@@ -20,15 +20,15 @@ namespace fs = std::filesystem;
 
 const fs::path kTruth = fs::path(TETRAVOX_SHARED_DIR) / "truth";
 
-/// Scenes whose data are unstructured cells, by name; "" where the directory is absent (the test then says SKIPPED).
-std::vector<std::string> mesh_scenes() {
+/// Scenes whose data are meshes, or grids, by name; "" where the directory is absent (the test then says SKIPPED).
+std::vector<std::string> find_scenes(bool are_grids) {
   std::vector<std::string> names;
   if (fs::is_directory(kTruth)) {
     for (const auto& entry : fs::directory_iterator(kTruth)) {
       if (entry.path().extension() != ".json") continue;
       std::ifstream file(entry.path());
       const std::string text{std::istreambuf_iterator<char>(file), {}};
-      if (text.find(".vtu\"") != std::string::npos) names.push_back(entry.path().stem().string());
+      if ((text.find(".vtu\"") == std::string::npos) == are_grids) names.push_back(entry.path().stem().string());
     }
   }
   std::sort(names.begin(), names.end());
@@ -36,7 +36,7 @@ std::vector<std::string> mesh_scenes() {
   return names;
 }
 
-class Truth : public ::testing::TestWithParam<std::string> {
+class SharedScene : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     if (GetParam().empty()) GTEST_SKIP() << "there are no exact pictures in " << kTruth;
@@ -50,6 +50,20 @@ class Truth : public ::testing::TestWithParam<std::string> {
     truth_ = tests::read_picture(kTruth / (GetParam() + ".npy"));
   }
 
+  /// Compares and says by how much they differ.
+  void expect_close(const Image& image, const std::string& method, double max, double rms) const {
+    std::printf("%s, %s: %s\n", GetParam().c_str(), method.c_str(),
+                tests::describe(tests::compare_images(image, truth_)).c_str());
+    EXPECT_TRUE(tests::images_agree(image, truth_, max, rms)) << method;
+  }
+
+  Scene scene_;
+  Dataset dataset_;
+  Image truth_;
+};
+
+class Truth : public SharedScene {
+ protected:
   Image draw(Integrator integrator) const {
     const PreparedMesh mesh = prepare_mesh(dataset_.mesh);
     const CompletedScene completed = complete_scene(scene_, mesh);
@@ -65,13 +79,8 @@ class Truth : public ::testing::TestWithParam<std::string> {
     const tests::ImageDifference difference = tests::compare_images(image, truth_);
     RecordProperty("max", std::to_string(difference.max));
     RecordProperty("rms", std::to_string(difference.rms));
-    std::printf("%s, %s: %s\n", GetParam().c_str(), name_of(integrator).c_str(), tests::describe(difference).c_str());
-    EXPECT_TRUE(tests::images_agree(image, truth_, max, rms));
+    SharedScene::expect_close(image, name_of(integrator), max, rms);
   }
-
-  Scene scene_;
-  Dataset dataset_;
-  Image truth_;
 };
 
 TEST_P(Truth, AntiderivativeIsWithinHalfAnEightBitStep) { expect_close(Integrator::kAntiderivative, 2e-3, 2e-4); }
@@ -88,10 +97,13 @@ TEST_P(Truth, OpenGlIsAsExact) {
   for (const auto& [integrator, max] : {std::pair{Integrator::kAntiderivative, 2e-3}, {Integrator::kPartial, 2e-4}}) {
     RenderSettings settings = scene_.settings;
     settings.integrator = integrator;
-    const Image image = renderer.render(completed.camera, settings);
-    std::printf("%s, %s: %s\n", GetParam().c_str(), name_of(integrator).c_str(),
-                tests::describe(tests::compare_images(image, truth_)).c_str());
-    EXPECT_TRUE(tests::images_agree(image, truth_, max, 2e-4)) << name_of(integrator);
+    SharedScene::expect_close(renderer.render(completed.camera, settings), "gl walk " + name_of(integrator), max, 2e-4);
+  }
+  // Cells are put in order, so that every order that is wrong anywhere is seen.
+  for (const Source source : {Source::kProject, Source::kVicp}) {
+    RenderSettings settings = scene_.settings;
+    settings.source = source;
+    SharedScene::expect_close(renderer.render(completed.camera, settings), "gl " + name_of(source), 5e-3, 5e-4);
   }
 }
 #endif
@@ -103,11 +115,42 @@ TEST_P(Truth, TheReferenceAgrees) {
   EXPECT_TRUE(tests::images_agree(image, reference::pick_pixels(truth_, view), 5e-6));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Truth, ::testing::ValuesIn(mesh_scenes()), [](const auto& test) {
+class GridTruth : public SharedScene {
+ protected:
+  /// By both exact integrators.
+  void expect_exact(Renderer& renderer, const CompletedScene& completed, const std::string& backend) const {
+    renderer.set_transfer_function(completed.optical_function);
+    for (const Integrator integrator : {Integrator::kAntiderivative, Integrator::kPartial}) {
+      RenderSettings settings = scene_.settings;
+      settings.integrator = integrator;
+      expect_close(renderer.render(completed.camera, settings), backend + " march " + name_of(integrator), 3e-3, 3e-4);
+    }
+  }
+};
+
+TEST_P(GridTruth, GridsAreWithinTheirTolerance) {
+  const PreparedGrid grid = prepare_grid(dataset_.grid);
+  Renderer renderer(grid);
+  expect_exact(renderer, complete_scene(scene_, grid), "cpu");
+}
+
+#ifdef TETRAVOX_WITH_GL
+TEST_P(GridTruth, OpenGlIsAsExact) {
+  TETRAVOX_REQUIRE_GL();
+  const PreparedGrid grid = prepare_grid(dataset_.grid);
+  Renderer renderer = make_gl_renderer(grid);
+  expect_exact(renderer, complete_scene(scene_, grid), "gl");
+}
+#endif
+
+std::string test_name(const ::testing::TestParamInfo<std::string>& test) {
   std::string name = test.param.empty() ? "absent" : test.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Truth, ::testing::ValuesIn(find_scenes(false)), test_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, GridTruth, ::testing::ValuesIn(find_scenes(true)), test_name);
 
 }  // namespace
 }  // namespace tetravox::conformance

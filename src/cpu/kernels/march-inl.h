@@ -70,8 +70,7 @@ HWY_INLINE Float find_largest(const optics::SteepnessTable& table, const std::ve
                               Float high) {
   const auto bin = [&](Float scalar) {
     const Float at = hn::Mul(hn::Sub(scalar, constant(table.first)), constant(table.bins_per_scalar));
-    return round_small(
-        hn::Floor(hn::Min(hn::Max(at, constant(0.0f)), constant(optics::SteepnessTable::kBins - 1))));
+    return round_small(hn::Floor(hn::Min(hn::Max(at, constant(0.0f)), constant(optics::SteepnessTable::kBins - 1))));
   };
   const Int first = bin(low), last = bin(high);
   const Int count = hn::Add(hn::Sub(last, first), hn::Set(kInt, 1));

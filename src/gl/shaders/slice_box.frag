@@ -3,7 +3,6 @@
 #include "slice.glsl"
 
 flat in ivec2 piece;
-flat in int tile;
 layout(location = 0) out vec4 color;
 
 void main() {

@@ -19,7 +19,6 @@ layout(location = 0) uniform float side;  // 1: rays that go the light's way, -1
 #endif
 
 flat in ivec2 piece;
-flat in int tile;
 layout(location = 0) out vec4 color;
 
 vec2 span_in_piece(Path path) {

@@ -69,6 +69,9 @@ struct View {
 constexpr SlicingKind kPlanes[] = {SlicingKind::kObject2d, SlicingKind::kObject2dInterpolated, SlicingKind::kStripes2d,
                                    SlicingKind::kView3d};
 
+constexpr SlicingKind kAllKinds[] = {SlicingKind::kObject2d, SlicingKind::kObject2dInterpolated,
+                                     SlicingKind::kStripes2d, SlicingKind::kView3d, SlicingKind::kShells};
+
 TEST(SliceGeometry, ClippedPartsAddUpToTheBody) {
   View seen("outside");
   const SlicingRequest request = seen.request(SlicingKind::kView3d, 10);
@@ -113,10 +116,11 @@ TEST(SliceGeometry, SlabsFillTheBox) {
     }
 }
 
-/// From the eye's slab up, then down: for a ray either way slabs come front to back.
+/// From the eye's slab up, then down: for a ray either way slabs come front to back. Rays of an orthographic camera all
+/// go the same way through planes; shells lie one round the other.
 TEST(SliceGeometry, EveryRayPassesSlabsInTheirOrder) {
   for (const char* camera : {"outside", "orthographic", "inside", "near", "plane"})
-    for (const SlicingKind kind : kPlanes) {
+    for (const SlicingKind kind : kAllKinds) {
       View seen(camera);
       const SlicingRequest request = seen.request(kind, 40);
       const SlabFamily family = make_slabs(seen.view, request);
@@ -124,10 +128,14 @@ TEST(SliceGeometry, EveryRayPassesSlabsInTheirOrder) {
       ASSERT_EQ(static_cast<int>(triangles.slabs.size()), family.count);
       std::set<int> all;
       int last_up = -1, last_down = family.count;
-      const double eye = (family.plane.distance(seen.view.camera.eye) - family.first) / family.step;
+      double eye = (family.plane.distance(seen.view.camera.eye) - family.first) / family.step;
+      if (family.are_shells) eye = 0.0;
+      if (seen.view.camera.is_orthographic) eye = family.plane.normal[2] > 0.0 ? 0.0 : family.count;
+      if (seen.view.camera.is_orthographic) {
+        ASSERT_GT(std::abs(family.plane.normal[2]), 0.0);
+      }
       for (const SlabRange& slab : triangles.slabs) {
         all.insert(slab.slab);
-        if (seen.view.camera.is_orthographic) continue;
         if (slab.slab + 0.5 > eye) {
           EXPECT_GT(slab.slab, last_up);
           last_up = slab.slab;

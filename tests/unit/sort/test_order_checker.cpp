@@ -10,6 +10,7 @@
 #include "tetravox/error.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 namespace tetravox::tests {
@@ -48,6 +49,36 @@ TEST(OrderChecker, TwoCellsInTheWrongOrder) {
     }
   EXPECT_GE(found, 5u);
   EXPECT_EQ(check(mesh, camera, order).wrong_segments, 0u);
+}
+
+TEST(OrderChecker, FacesAreJudgedByThePlacesOfVertices) {
+  MeshBuilder builder;
+  const auto point = [&](double x, double y, double z) { return builder.add_point({x, y, z}, z); };
+  const std::uint32_t a = point(0, 0, 0), b = point(1, 0, 0), c = point(0, 1, 0);
+  builder.add_cell(CellType::kTetrahedron, {a, b, c, point(0.2, 0.2, 1)});
+  builder.add_cell(CellType::kTetrahedron, {b, a, c, point(0.2, 0.2, -1)});
+  const PreparedMesh mesh = prepare_mesh(builder.build());
+  const auto vertices = mesh::find_cell_vertices(mesh);
+  const auto height = [&](std::uint32_t cell) {
+    float sum = 0.0f;
+    for (const std::uint32_t id : vertices[cell]) sum += mesh.vertices[id].z;
+    return sum;
+  };
+  Camera camera = look_along_z(mesh, 4.0);
+  for (const double side : {-1.0, 1.0}) {
+    camera.position = {0.1, 0.1, 4.0 * side};
+    camera.focal_point = {0.1, 0.1, 0.0};
+    const std::uint32_t front = side * height(0) > side * height(1) ? 0u : 1u;
+    for (const bool is_perspective : {true, false}) {
+      camera.parallel_scale.reset();
+      if (!is_perspective) camera.parallel_scale = 1.0;
+      const OrderReport right = check(mesh, camera, std::vector<std::uint32_t>{1 - front, front});
+      const OrderReport wrong = check(mesh, camera, std::vector<std::uint32_t>{front, 1 - front});
+      EXPECT_EQ(right.face_pairs, 1u);
+      EXPECT_EQ(right.face_violations, 0u);
+      EXPECT_EQ(wrong.face_violations, 1u);
+    }
+  }
 }
 
 TEST(OrderChecker, WhatIsNoPermutation) {
@@ -171,6 +202,21 @@ TEST(GapRelations, EveryOneIsTrue) {
     }
   }
   EXPECT_GT(measured, 1000u);
+}
+
+TEST(GapRelations, CanBeCancelled) {
+  const PreparedMesh mesh = prepare_mesh(make_loose_tetrahedra(4, 2));
+  const auto cells = sort::find_sorted_cells(mesh);
+  const sort::ViewPoint view = sort::make_view_point(mesh, make_cameras(mesh.bounds)[0].camera);
+  std::vector<sort::CellSides> sides;
+  sort::find_cell_sides(mesh, cells, view, sides);
+  const std::atomic<bool> is_cancelled{true};
+  try {
+    sort::find_gap_relations(mesh, cells, sides, view, 2.0, {{}, &is_cancelled});
+    ADD_FAILURE() << "it went on";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kCancelled);
+  }
 }
 
 TEST(CentroidOrder, AsComparingSays) {

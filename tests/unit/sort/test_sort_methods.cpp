@@ -133,5 +133,22 @@ TEST(SortMethods, ACameraWithoutAViewIsRefused) {
   EXPECT_THROW(check_order(entry.mesh, camera, {}), Error);
 }
 
+TEST(SortMethods, ACancelledSortIsMadeAnew) {
+  const PreparedMesh mesh = prepare_mesh(make_loose_tetrahedra(4, 2));
+  for (const SortMethod method : {SortMethod::kMpvo, SortMethod::kMpvonc, SortMethod::kXmpvo}) {
+    SCOPED_TRACE(name_of(method));
+    VisibilitySorter sorter(mesh), fresh(mesh);
+    std::atomic<bool> is_cancelled{false};
+    const Progress progress{{}, &is_cancelled};
+    for (const NamedCamera& view : make_sort_cameras(mesh)) {
+      is_cancelled = true;
+      EXPECT_THROW(sorter.sort(view.camera, {.method = method}, nullptr, progress), Error);
+      is_cancelled = false;
+      EXPECT_TRUE(std::ranges::equal(sorter.sort(view.camera, {.method = method}, nullptr, progress),
+                                     fresh.sort(view.camera, {.method = method, .use_last_order = false})));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tetravox::tests
