@@ -5,7 +5,24 @@
 add_library(tetravox_flags INTERFACE)
 target_compile_features(tetravox_flags INTERFACE cxx_std_20)
 target_compile_options(tetravox_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror -ffp-contract=off)
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror -ffp-contract=off -pthread)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # Wrong about std::string (GCC bug 105651); so are others once its header is precompiled.
+  target_compile_options(tetravox_flags INTERFACE -Wno-restrict)
+  if(TETRAVOX_WITH_PRECOMPILED_HEADERS)
+    target_compile_options(tetravox_flags INTERFACE
+      -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+  endif()
+endif()
+if(TETRAVOX_WITH_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # Headers that do not fit the flags of a target are said to, and parsed again.
+  target_compile_options(tetravox_flags INTERFACE -Wno-error=invalid-pch)
+endif()
+
+find_package(TBB REQUIRED)
+tetravox_add_precompiled(library POSITION_INDEPENDENT
+  LIBRARIES TBB::tbb HEADERS ${TETRAVOX_STANDARD_HEADERS} ${TETRAVOX_TBB_HEADERS})
+tetravox_add_precompiled(program HEADERS ${TETRAVOX_STANDARD_HEADERS})
 
 # tetravox_add_library(name SOURCES ... PUBLIC ... PRIVATE ...): static library tetravox_<name> of this folder.
 # The include root is the project, so that an include says where a header lives ("src/mesh/adjacency.h").
@@ -19,4 +36,5 @@ function(tetravox_add_library name)
   target_compile_features(tetravox_${name} PUBLIC cxx_std_20)
   target_link_libraries(tetravox_${name} PUBLIC ${arg_PUBLIC} PRIVATE $<BUILD_INTERFACE:tetravox_flags> ${arg_PRIVATE})
   set_target_properties(tetravox_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  tetravox_precompile(tetravox_${name} library)
 endfunction()

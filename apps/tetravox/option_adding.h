@@ -2,37 +2,44 @@
 
 /// How options are added to the parser: their text goes through our own strict parsers (option_values.h).
 ///
-/// Include it only where options are defined: CLI11 compiles slowly.
+/// Only option_adding.cpp and options.cpp know CLI11, which compiles slowly.
 
 #include "apps/tetravox/option_values.h"
 
 #include "tetravox/error.h"
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <utility>
-#include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace tetravox::tool {
 
 using Setter = std::function<void(const std::string& option, const std::string& text)>;
 
-/// The name that messages show: "--output" of "-o,--output", "--clip-box" of "--clip-box,--crop".
-inline std::string shown_name(const std::string& names) {
-  const std::string name = names.substr(names.find("--"));
-  return name.substr(0, name.find(','));
-}
+/// Options that are added from here on stand under this heading of the help text.
+void begin_group(CLI::App& app, const std::string& heading);
 
-/// Adds an option whose text goes through one of our own strict parsers.
-inline void add(CLI::App& app, const std::string& names, const std::string& type, const std::string& help, Setter set) {
-  const std::string shown = shown_name(names);
-  app.add_option_function<std::string>(
-         names, [shown, set = std::move(set)](const std::string& text) { set(shown, text); }, help)
-      ->type_name(type);
-}
+/// Adds an option whose text goes through one of our own strict parsers. Messages call it by its long name.
+void add(CLI::App& app, const std::string& names, const std::string& type, const std::string& help, Setter set);
+
+/// Adds an option that may be given several times, each time with one text.
+void add_repeatable(CLI::App& app, const std::string& names, const std::string& type, const std::string& help,
+                    Setter set);
+
+/// Adds an option without text that makes `value` true.
+void add_flag(CLI::App& app, const std::string& name, bool& value, const std::string& help);
+/// The same; `set` is called where the option is given.
+void add_flag(CLI::App& app, const std::string& name, std::function<void()> set, const std::string& help);
+
+/// Adds an argument that has no name in front of it.
+void add_positional(CLI::App& app, const std::string& name, std::string& value, const std::string& help);
+
+/// What stands below the options in the help text.
+void set_footer(CLI::App& app, const std::string& text);
 
 /// A setter that stores what `parse` makes of the text.
 template <class T, class Parse>
@@ -68,20 +75,6 @@ auto named(FromName from_name) {
 
 inline bool parse_switch(const std::string& option, const std::string& text) {
   return parse_choice(option, text, {"on", "off"}) == 0;
-}
-
-/// Adds an option that may be given several times, each time with one text.
-inline void add_repeatable(CLI::App& app, const std::string& names, const std::string& type, const std::string& help,
-                           Setter set) {
-  const std::string shown = shown_name(names);
-  app.add_option_function<std::vector<std::string>>(
-         names,
-         [shown, set = std::move(set)](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts) set(shown, text);
-         },
-         help)
-      ->type_name(type)
-      ->allow_extra_args(false);
 }
 
 }  // namespace tetravox::tool

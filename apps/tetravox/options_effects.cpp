@@ -129,8 +129,8 @@ bool EffectOptions::wants_light() const {
 }
 
 void add_light(CLI::App& app, EffectOptions& effects) {
-  app.option_defaults()->group("Light");
-  app.add_flag("--shade", effects.use_headlight, "Light from the eye; other options of light and surfaces imply it");
+  begin_group(app, "Light");
+  add_flag(app, "--shade", effects.use_headlight, "Light from the eye; other options of light and surfaces imply it");
   add(app, "--lights", "LIGHTS",
       "headlight, directional:x,y,z (the way it shines), point:x,y,z, or none; several with ';' between; :r,g,b adds a "
       "colour, *k an intensity",
@@ -167,18 +167,17 @@ void add_light(CLI::App& app, EffectOptions& effects) {
 }
 
 void add_shapes(CLI::App& app, EffectOptions& effects) {
-  app.option_defaults()->group("Surfaces");
+  begin_group(app, "Surfaces");
   add_repeatable(app, "--isosurface", "VALUE[:R,G,B[:OPACITY]]",
                  "Surface where the field has a value; may be given again (default: the function's colour, opaque); "
                  "none: no surfaces",
                  store_in(effects.surfaces, parse_surface));
   add(app, "--isosurface-back-color", "R,G,B", "Seen from where the field is higher",
       store(effects.surface_back_color, parse_color));
-  app.add_flag("--one-sided", effects.are_surfaces_one_sided, "Surfaces are invisible from where the field is higher");
+  add_flag(app, "--one-sided", effects.are_surfaces_one_sided, "Surfaces are invisible from where the field is higher");
   add(app, "--volume", "on|off", "Draw the volume, too (default: on)", store(effects.shows_volume, parse_switch));
 
-  app.option_defaults()->group(
-      "Clipping (each may be given again; outside: before it keeps what is outside; none: no shapes)");
+  begin_group(app, "Clipping (each may be given again; outside: before it keeps what is outside; none: no shapes)");
   std::optional<std::vector<ClipShape>>& shapes = effects.clip_shapes;
   add_repeatable(app, "--clip-plane", "X,Y,Z,NX,NY,NZ", "Keep the side that the normal points to",
                  store_in(shapes, with_side(parse_plane)));
@@ -191,7 +190,7 @@ void add_shapes(CLI::App& app, EffectOptions& effects) {
         effects.use_union = parse_choice(option, text, {"intersection", "union"}) == 1;
       });
 
-  app.option_defaults()->group("Opacity");
+  begin_group(app, "Opacity");
   add(app, "--opacity-weight", "NAME", "Thin out what changes little: none (default), scalar-difference, gradient",
       store(effects.weight, named(opacity_weight_from_name)));
   add(app, "--opacity-weight-scale", "X", "How fast it comes up, above 0 (default: 0.1)",

@@ -21,7 +21,7 @@ constexpr char kHistogramExamples[] = R"(Examples:
 }  // namespace
 
 void add_histogram(CLI::App& app, HistogramCommandOptions& options) {
-  app.option_defaults()->group("Histogram");
+  begin_group(app, "Histogram");
   add(app, "-o,--output", "FILE", "What to write: .png, .npy or .csv (default: INPUT's name with -histogram.png, here)",
       [&options](const std::string& option, const std::string& text) {
         if (text.empty()) throw UsageError(option + ": the text is empty");
@@ -53,7 +53,7 @@ void add_histogram(CLI::App& app, HistogramCommandOptions& options) {
       [&options](const std::string& option, const std::string& text) {
         options.other_range = parse_range(option, text);
       });
-  app.footer(kHistogramExamples);
+  set_footer(app, kHistogramExamples);
 }
 
 }  // namespace tetravox::tool

@@ -71,7 +71,7 @@ WidgetOption parse_widget(const std::string& option, const std::string& text) {
 }  // namespace
 
 void add_multidimensional(CLI::App& app, MultidimensionalOptions& options) {
-  app.option_defaults()->group("Function of several variables (tetravox list methods)");
+  begin_group(app, "Function of several variables (tetravox list methods)");
   add(app, "--variables", "NAMES",
       "Beside the value of --array: gradient, array:NAME[:COMPONENT], or two of them with ',' between; =a..b sets a "
       "range; none: of the value alone",
@@ -87,7 +87,7 @@ void add_multidimensional(CLI::App& app, MultidimensionalOptions& options) {
       "Entries an axis that widgets are sampled with (default: 128; of three from the data: 64)",
       store(options.resolution, integer(16, 1024)));
 
-  app.option_defaults()->group("Colour by another array");
+  begin_group(app, "Colour by another array");
   add(app, "--color-array", "NAME[:COMPONENT]",
       "Array that colours follow, opacity that of --array; none: of one array",
       [&options](const std::string& option, const std::string& text) {

@@ -19,7 +19,7 @@ constexpr char kOrderExamples[] = R"(Examples:
 }  // namespace
 
 void add_order(CLI::App& app, OrderCommandOptions& options) {
-  app.option_defaults()->group("Order");
+  begin_group(app, "Order");
   add(app, "--sort", "NAME", "How to sort (tetravox list sorts; default: xmpvo)",
       store(options.method, named(sort_method_from_name)));
   add(app, "--direction", "back-to-front|front-to-back", "Which cell comes first (default: back-to-front)",
@@ -28,14 +28,14 @@ void add_order(CLI::App& app, OrderCommandOptions& options) {
                                 ? SortDirection::kBackToFront
                                 : SortDirection::kFrontToBack;
       });
-  app.add_flag("--check", options.use_check, "Check the order by brute force: all faces, and rays through pixels");
+  add_flag(app, "--check", options.use_check, "Check the order by brute force: all faces, and rays through pixels");
   add(app, "--resolution", "W,H", "Rays of the check (default: 128,128)", store(options.resolution, parse_resolution));
   add(app, "--repeat", "N", "Sort N times, for timing (default: 1)", store(options.repeat, integer(1, kLargestRepeat)));
   add(app, "--threads", "N", "Threads (default: 0, all cores)",
       store(options.threads, integer(0, kLargestThreadCount)));
   add(app, "-o,--output", "FILE", "Write the order: .npy or .csv, numbers of tetrahedra", store_text(options.output));
   add(app, "--statistics", "FILE", "Write times and counts as JSON", store_text(options.statistics));
-  app.footer(kOrderExamples);
+  set_footer(app, kOrderExamples);
 }
 
 }  // namespace tetravox::tool
