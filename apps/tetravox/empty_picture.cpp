@@ -47,14 +47,14 @@ std::string explain_transparent(const PictureContext& context) {
            "camera does not see them (" +
            format_bounds(bounds_of(context.body)) +
            "); choose other widgets, another table or wider ranges, or leave them out for a function from the data";
-  if (context.statistics.rays == 0)
-    return "the picture is empty: the camera does not see the data (" + format_bounds(bounds_of(context.body)) +
-           "); leave the camera out for a view of everything";
   const ValueRange range = scalar_range_of(context.body);
   if (largest_extinction(context.completed.optical_function, range) <= 0.0)
     return "the picture is empty: the transfer function is transparent over the data's range " + format_range(range) +
            "; give --range " + format_number(range.min) + "," + format_number(range.max) +
            " or another --transfer-function";
+  if (context.statistics.rays == 0)
+    return "the picture is empty: the camera does not see the data (" + format_bounds(bounds_of(context.body)) +
+           "); leave the camera out for a view of everything";
   return "the picture is empty: the transfer function is too thin to be seen; give a smaller --unit-distance or "
          "larger extinctions";
 }

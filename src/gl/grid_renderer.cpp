@@ -32,8 +32,9 @@ class GridRenderer final : public scene::FrameRenderer {
   GridRenderer(const PreparedGrid& grid, std::shared_ptr<Context> context)
       : grid_(grid), context_(std::move(context)), frame_(grid::make_grid_frame(grid.data.shape)) {
     const auto current = context_->make_current();
-    device_ = std::make_unique<Device>(grid, *context_);
+    auto device = std::make_unique<Device>(grid, *context_);  // freed while the context is current
     context_->require_no_error("the grid");
+    device_ = std::move(device);
   }
   ~GridRenderer() override { free_parts(*context_, device_); }
 

@@ -18,7 +18,9 @@ MeshBuffers::MeshBuffers(const PreparedMesh& mesh, const Limits& limits) : mesh_
   // Texels of cells are single numbers, five a cell.
   const std::uint64_t most =
       std::max<std::uint64_t>({5 * mesh.cells.size(), mesh.vertices.size(), mesh.boundary.size()});
-  const std::uint64_t allowed = std::min<std::uint64_t>(limits.buffer_texels, 0x7FFFFFFFu);
+  // The twelve vertices of a cell's faces are counted by signed numbers, too (source vicp).
+  constexpr std::uint64_t kMostCells = 0x7FFFFFFFu / 12;
+  const std::uint64_t allowed = std::min<std::uint64_t>(limits.buffer_texels, 5 * kMostCells);
   if (most > allowed)
     throw Error(ErrorCode::kUnsupported, "OpenGL: this device holds meshes of at most " + std::to_string(allowed / 5) +
                                              " tetrahedra, and this one has " + std::to_string(mesh.cells.size()) +

@@ -9,6 +9,7 @@
 #include "src/support/timer.h"
 #include "tetravox/error.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -21,8 +22,9 @@ class MeshRenderer final : public scene::FrameRenderer {
  public:
   MeshRenderer(const PreparedMesh& mesh, std::shared_ptr<Context> context) : mesh_(mesh), context_(std::move(context)) {
     const auto current = context_->make_current();
-    device_ = std::make_unique<Device>(mesh, context_->limits());
+    auto device = std::make_unique<Device>(mesh, context_->limits());  // freed while the context is current
     context_->require_no_error("the mesh");
+    device_ = std::move(device);
   }
   ~MeshRenderer() override { free_parts(*context_, device_); }
 
@@ -75,9 +77,18 @@ class MeshRenderer final : public scene::FrameRenderer {
   }
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
-    return static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height) * 4 *
-               sizeof(float) +
-           2 * scene::preintegration_bytes(settings);
+    const std::uint64_t pixels =
+        static_cast<std::uint64_t>(settings.width) * static_cast<std::uint64_t>(settings.height);
+    constexpr std::uint64_t kPixel = 4 * sizeof(float);
+    std::uint64_t on_device = pixels * kPixel;
+    if (settings.source.value_or(Source::kWalk) == Source::kWalk)
+      on_device += pixels * WalkPasses::kPauseBytes;
+    else
+      on_device += mesh_.cells.size() * Projector::kBytesACell;
+    if (settings.projection.sort == CellSort::kExact) on_device += SegmentLists::kMostBytes;
+    const Device& device = *device_;
+    const std::uint64_t held = device.frame.bytes() + device.walk.bytes() + device.projector.bytes();
+    return pixels * kPixel + on_device - std::min(on_device, held) + 2 * scene::preintegration_bytes(settings);
   }
   std::uint64_t bytes() const override {
     return device_->mesh.bytes() + device_->frame.bytes() + device_->tables.bytes() + device_->walk.bytes() +

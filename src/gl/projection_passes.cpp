@@ -196,11 +196,7 @@ void ProjectionPasses::draw_faces(const ProjectionShader& shader, std::size_t fi
     no_attributes_ = VertexArrayName(name);
   }
   glBindVertexArray(no_attributes_.get());
-  // Vertices are counted by signed numbers.
-  constexpr std::size_t kMost = 0x7FFFFFFF / 12;
-  for (std::size_t done = 0; done < count; done += kMost)
-    glDrawArrays(GL_TRIANGLES, static_cast<GLint>(12 * (first + done)),
-                 static_cast<GLsizei>(12 * std::min(kMost, count - done)));
+  glDrawArrays(GL_TRIANGLES, static_cast<GLint>(12 * first), static_cast<GLsizei>(12 * count));
 }
 
 std::uint64_t ProjectionPasses::bytes() const {

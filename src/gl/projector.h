@@ -27,6 +27,9 @@ struct ProjectionFrame {
 /// With the context current.
 class Projector {
  public:
+  /// Of cells, their order and what they become, here and on the device.
+  static constexpr std::uint64_t kBytesACell = 144;
+
   explicit Projector(const PreparedMesh& mesh) : mesh_(mesh) {}
 
   /// Draws into the frame's picture. @throws Error: kCancelled; kOutOfMemory.

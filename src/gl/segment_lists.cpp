@@ -11,8 +11,6 @@ namespace {
 
 constexpr GLuint kCounterBinding = 0, kNodeBinding = 1, kHeadBinding = 2, kPictureUnit = 0;
 constexpr std::uint64_t kNodeBytes = 20;
-/// Of lists, unless the device allows less.
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28;
 
 struct Counters {
   std::uint32_t node_count = 0, unfinished_count = 0, too_long_count = 0;

@@ -36,6 +36,9 @@ struct ListFrame {
 /// With the context current.
 class SegmentLists {
  public:
+  /// Of lists, unless the device allows less.
+  static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28;
+
   /// Calls `draw` for bands of the picture, as high as the lists have room for, with the lists bound and only the
   /// band's rows let through, and composites what it put into them. How many segments there were.
   /// @throws Error: kOutOfMemory where a single row exceeds the device; kUnsupported where a pixel has more segments

@@ -25,7 +25,6 @@ struct EntryNode {
   std::uint32_t face, next;
   float depth;
 };
-constexpr std::size_t kPauseBytes = 48;
 struct PeeledFace {
   float key;
   std::uint32_t face;

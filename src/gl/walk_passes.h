@@ -46,6 +46,9 @@ ShaderRecipe recipe_of_walk(const IntegratorShader& integrator, const WalkVarian
 /// With the context current.
 class WalkPasses {
  public:
+  /// What a ray that needs another pass is kept in, each pixel.
+  static constexpr std::size_t kPauseBytes = 48;
+
   /// Draws into the frame's picture. @throws Error: kCancelled; kOutOfMemory where the lists exceed the device.
   void draw(const WalkFrame& frame, RenderStatistics& statistics);
   std::uint64_t bytes() const;
