@@ -237,8 +237,7 @@ void GridRenderer::march(const scene::GridView& view, const RenderSettings& sett
     kind.has_squares = true;
   }
   MarchBlock block = describe(view, settings);
-  constexpr int kCorners = 8;  // that pre-classification looks up, each
-  block.most_work = pieces_a_pass(kind.shader) / (kind.integrator == Integrator::kPre ? kCorners : 1);
+  block.most_work = pieces_a_pass(kind.shader);
   MarchFrame frame{block, kind, device.frame, settings, context_->limits(), context.progress};
   const scene::PlanSources sources = plan_sources(settings);
   const FilteredBricks filtered = filtered_bricks(sources, settings);

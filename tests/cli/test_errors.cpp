@@ -76,7 +76,7 @@ TEST_F(Errors, UsageErrorsHelp) {
   expect_error(run({"render", "builtin:sphere", "--range"}), 2, {"--range"});
   expect_error(run({"render", "builtin:sphere", "--quiet", "--verbose"}), 2, {"--quiet", "--verbose"});
   expect_error(run({"render", "builtin:sphere", "-o", "a.exr", "--alpha"}), 2, {"--alpha"});
-  expect_error(run({"list"}), 2, {"presets, readers, builtins, methods, environments or sorts"});
+  expect_error(run({"list"}), 2, {"presets, readers, builtins, methods, environments, sorts or devices"});
   expect_error(run({"list", "colours"}), 2, {"colours"});
   EXPECT_TRUE(names().empty());
 }

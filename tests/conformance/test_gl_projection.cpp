@@ -6,6 +6,8 @@
 #include "tests/reference/integrator.h"
 #include "tetravox/error.h"
 
+#include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace tetravox::conformance {
@@ -172,6 +174,38 @@ TEST(GlProjectionOrder, ListsAreRightWhereCellsHideOneAnotherInACircle) {
     EXPECT_EQ(drawn.projection.cyclic_cells, 3u);
     EXPECT_GE(drawn.projection.broken_relations, 1u);
     EXPECT_GT(tests::compare_images(sorted, expected).max, 0.1);  // no order of whole cells is right
+  }
+}
+
+/// Front to back: `extinction` times `length` of a medium of one colour.
+void add_layer(double extinction, const std::array<double, 3>& emission, double length, std::array<double, 4>& sum) {
+  const double passed = std::exp(-extinction * length);
+  for (std::size_t c = 0; c < 3; ++c) sum[c] += (1.0 - sum[3]) * emission[c] / extinction * (1.0 - passed);
+  sum[3] = 1.0 - (1.0 - sum[3]) * passed;
+}
+
+/// Two boxes that share a part: in it both absorb and emit.
+TEST(GlProjectionOrder, WhereCellsIntersectBothAreThere) {
+  TETRAVOX_REQUIRE_GL();
+  tests::MeshBuilder builder;
+  tests::add_box(builder, {.bricks = {2, 2, 2}, .lower = {-1, -1, -1}, .upper = {1, 1, 0.3}, .is_hole = {}},
+                 [](const Vector3&) { return 0.25; });
+  tests::add_box(builder, {.bricks = {3, 3, 3}, .lower = {-1.1, -1.1, -0.4}, .upper = {1.2, 1.1, 1}, .is_hole = {}},
+                 [](const Vector3&) { return 0.75; });
+  const Subject scene = make_subject(builder.build());
+  const OpticalFunction function{
+      {{0.2, 0.5, {1, 0.2, 0}}, {0.3, 0.5, {1, 0.2, 0}}, {0.7, 0.8, {0, 0.3, 1}}, {0.8, 0.8, {0, 0.3, 1}}}};
+  std::array<double, 4> expected{};
+  add_layer(0.8, {0.0, 0.24, 0.8}, 0.7, expected);
+  add_layer(1.3, {0.5, 0.34, 0.8}, 0.7, expected);
+  add_layer(0.5, {0.5, 0.1, 0.0}, 0.6, expected);
+  const Camera camera{{0.1, 0.05, 5}, {0.1, 0.05, 0}, {0, 1, 0}, 30.0, 0.5};
+  Renderer renderer = make_gl_renderer(scene.mesh);
+  renderer.set_transfer_function(function);
+  for (const Source source : {Source::kProject, Source::kVicp}) {
+    const Image image = renderer.render(camera, make_settings(source, CellSort::kExact));
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      ASSERT_NEAR(image.pixels[i], expected[i % 4], 1e-3) << name_of(source) << " pixel " << i / 4;
   }
 }
 

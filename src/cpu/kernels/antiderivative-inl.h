@@ -11,8 +11,6 @@
 #include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 
-#include <cmath>
-
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
@@ -79,6 +77,26 @@ class AntiderivativeIntegrator {
   }
 
   // ---- for the gentle variant below ----
+
+  /// Replaces the integrals of the segments in `lanes`, which are too flat for a difference of sums: densities at their
+  /// middle.
+  HWY_NOINLINE void integrate_flat(Float middle, Float length, Mask lanes, Float integrals[4]) const {
+    const Float clamped = inside(middle);
+    const Float low_node = hn::Min(hn::Floor(clamped), hn::Sub(last_position(), constant(1.0f)));
+    const Int node = round_small(low_node);
+    const Float f = hn::Sub(clamped, low_node);
+    const Uint record = hn::BitCast(kUint, hn::Add(node, node));
+    const Record low = load_table_records(entries_->densities.data(), record);
+    const Record high = load_table_records((entries_ + 1)->densities.data(), record);
+    const auto replace = [&](int i, Float a, Float b) {
+      const Float density = multiply_add(f, hn::Sub(b, a), a);
+      integrals[i] = hn::IfThenElse(lanes, hn::Mul(density, length), integrals[i]);
+    };
+    replace(0, low.x, high.x);
+    replace(1, low.y, high.y);
+    replace(2, low.z, high.z);
+    replace(3, low.w, high.w);
+  }
 
   /// Segments that are thick, or that may change colour too much: a first guess, by the steepest colour of all.
   HWY_INLINE Mask may_err(Float depth, Float nodes, const Accumulated& sum) const {
@@ -280,14 +298,11 @@ class AntiderivativeIntegrator {
 /// The same where the function is gentle at the table's resolution (meshes: `AntiderivativeTable::is_gentle`; grids,
 /// brick by brick: `BrickPlan::is_gentle`): scalars are rounded to nodes, so that a segment costs one 16-byte load
 /// instead of three.
-///
-/// A segment that ends close to the node at its front has no difference of sums to divide by that of the nodes. It
-/// takes the density beside that node, which goes on to be the front: a scalar is never taken as more than two nodes
-/// off.
 class GentleAntiderivativeIntegrator {
  public:
-  /// The node that stands for the scalar at the front, and the antiderivatives there.
+  /// The scalar at the front, the node that stands for it, and the antiderivatives there.
   struct Front {
+    Float position;  // in nodes
     Int node;
     Int sums[4];
   };
@@ -295,47 +310,58 @@ class GentleAntiderivativeIntegrator {
   explicit GentleAntiderivativeIntegrator(const IntegratorTables& tables)
       : table_(*tables.antiderivative), precise_(tables) {}
 
-  HWY_INLINE Front front_at(Float scalar) const { return front_of(round_small(place(scalar))); }
+  HWY_INLINE Front front_at(Float scalar) const { return front_of(precise_.inside(precise_.position(scalar))); }
   static HWY_INLINE void replace_front(Mask mask, const Front& from, Front& to) {
+    to.position = hn::IfThenElse(mask, from.position, to.position);
     to.node = hn::IfThenElse(int_mask(mask), from.node, to.node);
     for (int i = 0; i < 4; ++i) to.sums[i] = hn::IfThenElse(int_mask(mask), from.sums[i], to.sums[i]);
   }
 
+  /// See above.
+  static HWY_INLINE void move_front(const Front& from, Front& to) {
+    to.position = from.position;
+    to.node = from.node;
+    to.sums[0] = from.sums[0];
+    to.sums[1] = from.sums[1];
+    to.sums[2] = from.sums[2];
+    to.sums[3] = from.sums[3];
+  }
+
   HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
-    const Float position = place(segment.scalar_back);
-    const Mask flat = hn::Lt(hn::AbsDiff(position, hn::ConvertTo(kFloat, front.node)), constant(kFlatNodes));
-    const Mask is_last = hn::RebindMask(kFloat, hn::Eq(front.node, hn::Set(kInt, table_.last_node)));
-    const Int beside = hn::Add(front.node, hn::IfThenElse(int_mask(is_last), hn::Set(kInt, -1), hn::Set(kInt, 1)));
-    const Front back = front_of(hn::IfThenElse(int_mask(flat), beside, round_small(position)));
+    const Front back = front_at(segment.scalar_back);
+    const Float nodes = hn::ConvertTo(kFloat, hn::Sub(back.node, front.node));
+    const Mask flat = hn::Lt(hn::Abs(hn::Sub(back.position, front.position)), constant(kFlatNodes));
     const Float scale = hn::Div(hn::Mul(segment.length, constant(table_.density_per_unit)),
-                                hn::ConvertTo(kFloat, hn::Sub(back.node, front.node)));
+                                hn::IfThenElse(flat, constant(1.0f), nodes));
     Float integrals[4];
     for (int i = 0; i < 4; ++i)
       integrals[i] = hn::Mul(hn::ConvertTo(kFloat, hn::Sub(back.sums[i], front.sums[i])), scale);
+    // Rays that have nothing to integrate do not count.
+    if (!hn::AllFalse(kFloat, hn::And(flat, hn::Gt(segment.length, constant(0.0f))))) {
+      const Float middle = hn::Mul(constant(0.5f), hn::Add(back.position, front.position));
+      precise_.integrate_flat(middle, segment.length, flat, integrals);
+    }
 
-    const Float nodes =
-        hn::Mul(hn::AbsDiff(segment.scalar_back, segment.scalar_front), constant(std::abs(table_.nodes_per_scalar)));
     const Mask beyond = precise_.is_beyond(segment);
-    const Mask doubtful = hn::Or(precise_.may_err(integrals[0], nodes, sum), beyond);
+    const Mask doubtful = hn::Or(precise_.may_err(integrals[0], hn::Abs(nodes), sum), beyond);
     if (HWY_LIKELY(hn::AllFalse(kFloat, doubtful)))
       composite_piece(integrals[0], integrals + 1, absorbed_ratio_series(integrals[0]), sum);
     else
       precise_.integrate_doubtful(segment, precise_.front_at(segment.scalar_front),
                                   precise_.front_at(segment.scalar_back), integrals, doubtful, hn::FirstN(kFloat, 0),
                                   sum);
-    replace_front(hn::Not(flat), back, front);
+    move_front(back, front);
   }
 
  private:
-  /// Segments that end closer to the front's node are flat.
-  static constexpr float kFlatNodes = 1.5f;
-  static_assert(kFlatNodes + 0.5f <= 0.5f * optics::AntiderivativeTable::kFlatNodes);
+  static constexpr float kFlatNodes = optics::AntiderivativeTable::kFlatNodes;
 
-  HWY_INLINE Float place(Float scalar) const { return precise_.inside(precise_.position(scalar)); }
-  HWY_INLINE Front front_of(Int node) const {
+  HWY_INLINE Front front_of(Float position) const {
+    const Int node = round_small(position);
     const Record record =
         load_table_records(table_.entries.data()->sums.data(), hn::BitCast(kUint, hn::Add(node, node)));
-    return {node,
+    return {position,
+            node,
             {hn::BitCast(kInt, record.x), hn::BitCast(kInt, record.y), hn::BitCast(kInt, record.z),
              hn::BitCast(kInt, record.w)}};
   }

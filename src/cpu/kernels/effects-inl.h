@@ -39,7 +39,6 @@ class EffectIntegrator {
         is_light_cut_(effects_.longest_lit > 0.0f || effects_.largest_lit > 0.0f),
         is_light_all_(!kIsOfDomain && effects_.shading && !is_light_cut_ && !pieces_.is_weighted() && !effects_.depth &&
                       !effects_.record),
-        is_plain_(!kIsOfDomain && !effects_.shading && !pieces_.is_weighted() && !effects_.depth && !effects_.record),
         is_lit_from_eye_(effects_.shading && is_lit_from_eye(*effects_.shading)) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return base().front_at(scalar); }
@@ -48,12 +47,6 @@ class EffectIntegrator {
   /// Whether linear stretches without surfaces need light, and nothing else: then `integrate_lit_segment` serves.
   HWY_INLINE bool is_light_all(const Segments& segment) const {
     return is_light_all_ && (HWY_LIKELY(effects_.surfaces.empty()) || !meets_surface(effects_, segment));
-  }
-
-  /// Whether there is nothing but surfaces, and linear stretches meet none: then `integrate` serves.
-  HWY_INLINE bool is_plain(const Segments& segment) const { return is_plain_ && !meets_surface(effects_, segment); }
-  HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
-    if constexpr (!kIsOfDomain) base().integrate(segment, front, sum);
   }
 
   /// Whether `integrate_followed_segment` serves where `is_light_all` says that light is all.
@@ -333,7 +326,7 @@ class EffectIntegrator {
 
   PieceIntegrator<Base> pieces_;
   const Effects& effects_;
-  bool is_light_cut_, is_light_all_, is_plain_, is_lit_from_eye_;
+  bool is_light_cut_, is_light_all_, is_lit_from_eye_;
 };
 
 }  // namespace HWY_NAMESPACE

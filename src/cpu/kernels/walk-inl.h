@@ -173,8 +173,6 @@ class Walker : WalkLanes {
       if (HWY_UNLIKELY(is_cut)) {
         integrate_intervals(s, z_back, segment, integrate);
         light_.lose();
-      } else if (integrator_.is_plain(segment)) {
-        integrator_.integrate(segment, s.front, s.sum);
       } else if (HWY_UNLIKELY(!integrator_.is_light_all(segment))) {
         integrate(zero, one, one);
         light_.lose();

@@ -1,4 +1,6 @@
-// Composites the sorted segments of each pixel front to back, some of them a pass.
+// Composites the sorted segments of each pixel front to back, some pieces a pass. Where two overlap, as those of cells that
+// intersect, both are there: one is composited between the halves of the other, which errs by the third power of their
+// optical depth.
 
 #include "projection.glsl"
 #include "segment_lists.glsl"
@@ -8,6 +10,76 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0, rgba32f) uniform image2D picture;  // colour and transmittance, until a pixel is done
+
+// A part of a segment, from depth `from` to depth `to`.
+Node part_of(Node node, float from, float to) {
+  float slope = (node.scalar_back - node.scalar_front) / max(node.z_length, 1e-30);
+  Node part = node;
+  part.scalar_front = node.scalar_front + slope * (from - node.z_front);
+  part.scalar_back = node.scalar_front + slope * (to - node.z_front);
+  part.z_front = from;
+  part.z_length = to - from;
+  return part;
+}
+
+float back_of(Node node) { return node.z_front + node.z_length; }
+
+// Less is rounding.
+float least_overlap(Node a, Node b) {
+  return 1e-3 * min(a.z_length, b.z_length) + 4e-6 * max(abs(a.z_front), abs(b.z_front));
+}
+
+// The next piece of a pixel's list. What is left of its first two segments is kept in them.
+struct Overlap {
+  float end;  // of the stretch that both segments share
+  int stage;  // 0: none; 1, 2: of the two other pieces there, the next one
+};
+
+Node take_piece(inout uint head, inout Overlap overlap) {
+  Node a = nodes[head];
+  uint second = a.next;
+  if (second == kNoNode) {
+    head = kNoNode;
+    return a;
+  }
+  Node b = nodes[second];
+  if (overlap.stage == 1) {
+    overlap.stage = 2;
+    return part_of(b, b.z_front, overlap.end);
+  }
+  if (overlap.stage == 2) {
+    overlap.stage = 0;
+    Node piece = part_of(a, a.z_front, overlap.end);
+    float least = least_overlap(a, b);
+    bool is_a_left = back_of(a) - overlap.end > least, is_b_left = back_of(b) - overlap.end > least;
+    if (is_b_left) nodes[second] = part_of(b, overlap.end, back_of(b));
+    if (is_a_left) {
+      a = part_of(a, overlap.end, back_of(a));
+      if (!is_b_left) a.next = b.next;
+      nodes[head] = a;
+    } else {
+      head = is_b_left ? second : b.next;
+    }
+    return piece;
+  }
+  float begin = max(a.z_front, b.z_front), end = min(back_of(a), back_of(b)), least = least_overlap(a, b);
+  if (end - begin <= least) {
+    head = second;
+    return a;
+  }
+  if (begin - a.z_front > least) {
+    nodes[head] = part_of(a, begin, back_of(a));
+    return part_of(a, a.z_front, begin);
+  }
+  if (begin - b.z_front > least) {
+    nodes[second] = part_of(b, begin, back_of(b));
+    return part_of(b, b.z_front, begin);
+  }
+  overlap = Overlap(end, 1);
+  float middle = 0.5 * (a.z_front + end);
+  nodes[head] = part_of(a, middle, back_of(a));
+  return part_of(a, a.z_front, middle);
+}
 
 void main() {
   ivec2 pixel = pixel_of(gl_WorkGroupID, gl_LocalInvocationIndex);
@@ -21,12 +93,13 @@ void main() {
   }
   vec4 sum = is_first ? kNothingYet : imageLoad(picture, pixel);
   Ray ray = ray_of(pixel);
-  for (int i = 0; i < projection.segments_a_pass && node != kNoNode; ++i) {
-    Node passed = nodes[node];
+  Overlap overlap = Overlap(0.0, 0);
+  for (int i = 0; (i < projection.segments_a_pass || overlap.stage > 0) && node != kNoNode; ++i) {
+    Node passed = take_piece(node, overlap);
     Segment segment = Segment(passed.scalar_front, passed.scalar_back, passed.z_length * ray.world_per_z);
     Front front = front_at(segment.scalar_front);
     integrate(segment, front, sum);
-    node = frame.use_early_ray_termination != 0 && is_settled(sum) ? kNoNode : passed.next;
+    if (frame.use_early_ray_termination != 0 && is_settled(sum)) node = kNoNode;
   }
   heads[place] = node;
   bool is_done = node == kNoNode;
