@@ -50,7 +50,9 @@ class EffectIntegrator {
   }
 
   /// Whether `integrate_followed_segment` serves where `is_light_all` says that light is all.
-  HWY_INLINE bool is_light_followed() const { return is_light_all_ && is_lit_from_eye_; }
+  /// A vector with other segments among them would be lit as a whole in another way: there must be none in the frame,
+  /// or pictures would depend on the instruction set.
+  HWY_INLINE bool is_light_followed() const { return is_light_all_ && is_lit_from_eye_ && effects_.is_whole; }
 
   /// A whole linear stretch, with the light of the eye at its faces. `pass()` finds them, `lose()` says that nobody
   /// did.

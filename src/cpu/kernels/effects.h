@@ -104,7 +104,8 @@ struct LightChange {
 };
 
 struct Effects {
-  const Shading* shading = nullptr;        ///< null: unlit
+  const Shading* shading = nullptr;  ///< null: unlit
+  bool is_whole = false;  ///< whether no segment of the frame is clipped, by shapes or the eye, nor meets a surface
   std::span<const SurfaceSheet> surfaces;  ///< by ascending value
   CentroidView centroid;
   float camera_from_gradient[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row major; into stored scalars a local length
