@@ -236,6 +236,7 @@ void GridRenderer::march(const scene::GridView& view, const RenderSettings& sett
     squares->bind(kSquareUnit);
     kind.has_squares = true;
   }
+  device.tables.count_loops(settings, kind.shader);
   MarchBlock block = describe(view, settings);
   block.most_work = pieces_a_pass(kind.shader);
   MarchFrame frame{block, kind, device.frame, settings, context_->limits(), context.progress};

@@ -6,6 +6,7 @@
 #include "tetravox/error.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 
 namespace tetravox::gl {
@@ -14,16 +15,14 @@ namespace {
 constexpr GLuint kControlPointUnit = 2, kFirstIntervalUnit = 3, kTableUnit = 4, kVariationUnit = 5, kMarkUnit = 11;
 constexpr GLuint kTablesBinding = 1;
 
-/// Halves until the interval of a scalar is found: thousands of control points may share a bucket.
-constexpr int kProbes = 12;
 /// Samples that post-classification takes a piece: as integrators/post.glsl has it.
 constexpr int kSamplesAPiece = 16;
 
-const IntegratorShader kCell{"cell data", "integrators/cell.glsl", {}, 4 + kProbes};
+const IntegratorShader kCell{"cell data", "integrators/cell.glsl", {}, 4};
 const IntegratorShader kPartial{"partial", "integrators/partial.glsl", {{"ISO_VALUES", "1"}}, 4};
 const IntegratorShader kTable3d{"table3d", "integrators/table3d.glsl", {}, 4};
 const IntegratorShader kCylindrical{"cylindrical", "integrators/cylindrical.glsl", {}, 4};
-const IntegratorShader kPost{"post", "integrators/post.glsl", {}, 4 + kSamplesAPiece*(2 + kProbes)};
+const IntegratorShader kPost{"post", "integrators/post.glsl", {}, 4};
 
 /// `has_coarse`: the table has places that are too coarse; `is_beyond`: scalars may lie beyond its ends.
 IntegratorShader antiderivative_shader(bool has_coarse, bool is_beyond) {
@@ -51,6 +50,17 @@ IntegratorShader polynomial_shader(int degree, OpacityModel opacity) {
   shader.name += ", linear";
   shader.defines.emplace_back("LINEAR_OPACITY", "1");
   return shader;
+}
+
+/// Halvings until the interval of a scalar is found, at most: as find_interval of control_points.glsl goes.
+int count_probes(const optics::ControlPointTable& points) {
+  const auto& first = points.first_interval;
+  unsigned most = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const std::int32_t high = i + 2 < first.size() ? first[i + 2] : points.interval_count - 1;
+    most = std::max(most, static_cast<unsigned>(high - first[i]));
+  }
+  return static_cast<int>(std::bit_width(most));
 }
 
 }  // namespace
@@ -82,8 +92,19 @@ std::vector<IntegratorShader> bounded_integrator_shaders() {
 
 IntegratorShader IntegratorTables::point_shader() { return kCell; }
 
+void IntegratorTables::count_loops(const RenderSettings& settings, IntegratorShader& shader) const {
+  if (shader.file == kCell.file) shader.loops = std::max(4, 2 + probes_);
+  if (shader.file == kPost.file)
+    shader.loops = 4 + std::min(settings.samples, kSamplesAPiece) * (1 + std::max(probes_, 2));
+}
+
 IntegratorShader IntegratorTables::shader(const RenderSettings& settings) const {
-  if (sources_.is_constant) return kCell;
+  IntegratorShader shader = sources_.is_constant ? kCell : shader_of(settings);
+  count_loops(settings, shader);
+  return shader;
+}
+
+IntegratorShader IntegratorTables::shader_of(const RenderSettings& settings) const {
   switch (settings.integrator) {
     case Integrator::kAntiderivative:
       return antiderivative_shader(antiderivative_.has_coarse, is_beyond_);
@@ -122,6 +143,7 @@ double IntegratorTables::color_change(float min, float max) const {
 
 void IntegratorTables::set_transfer_function(const OpticalFunction& function, const TableSources& sources) {
   control_points_ = optics::build_control_point_table(function, sources.map);
+  probes_ = count_probes(control_points_);
   function_ = function;
   sources_ = sources;
   preintegration_.invalidate();

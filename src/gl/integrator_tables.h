@@ -76,6 +76,8 @@ class IntegratorTables {
   IntegratorShader shader(const RenderSettings& settings, const SegmentBounds& bounds) const;
   /// Of points that are looked up one by one: cell data, and samples.
   static IntegratorShader point_shader();
+  /// Sets the loops of a shader that looks up control points: of the function, and of the settings' samples.
+  void count_loops(const RenderSettings& settings, IntegratorShader& shader) const;
   const optics::ControlPointTable& control_points() const { return control_points_; }
   /// Stored scalars from node to node of the antiderivatives.
   float node_width() const { return 1.0f / antiderivative_.nodes_per_scalar; }
@@ -84,6 +86,7 @@ class IntegratorTables {
   std::uint64_t bytes() const;
 
  private:
+  IntegratorShader shader_of(const RenderSettings& settings) const;
   void upload_antiderivatives();
   void upload_control_points();
 
@@ -91,6 +94,7 @@ class IntegratorTables {
   TableSources sources_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
+  int probes_ = 0;                // halvings until the interval of a scalar is found
   double split_threshold_ = 0.0;  // of SegmentBounds::error
   bool is_beyond_ = false;        // whether scalars may lie beyond the table of antiderivatives
   bool has_antiderivatives_ = false, has_control_points_ = false;  // on the device
