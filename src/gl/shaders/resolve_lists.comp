@@ -1,6 +1,5 @@
 // Composites the sorted segments of each pixel front to back, some pieces a pass. Where two overlap, as those of cells that
-// intersect, both are there: one is composited between the halves of the other, which errs by the third power of their
-// optical depth.
+// intersect, both are there: one is composited between the halves of the other.
 
 #include "projection.glsl"
 #include "segment_lists.glsl"
