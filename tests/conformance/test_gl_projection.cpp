@@ -184,7 +184,8 @@ void add_layer(double extinction, const std::array<double, 3>& emission, double 
   sum[3] = 1.0 - (1.0 - sum[3]) * passed;
 }
 
-/// Two boxes that share a part: in it both absorb and emit. Segments share an optical depth of up to 0.3 here.
+/// Two boxes that share a part: in it both absorb and emit. Segments share an optical depth of up to 0.3 here: half an
+/// 8-bit step.
 TEST(GlProjectionOrder, WhereCellsIntersectBothAreThere) {
   TETRAVOX_REQUIRE_GL();
   tests::MeshBuilder builder;
@@ -205,7 +206,7 @@ TEST(GlProjectionOrder, WhereCellsIntersectBothAreThere) {
   for (const Source source : {Source::kProject, Source::kVicp}) {
     const Image image = renderer.render(camera, make_settings(source, CellSort::kExact));
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
-      ASSERT_NEAR(image.pixels[i], expected[i % 4], 1e-3) << name_of(source) << " pixel " << i / 4;
+      ASSERT_NEAR(image.pixels[i], expected[i % 4], 2e-3) << name_of(source) << " pixel " << i / 4;
   }
 }
 
