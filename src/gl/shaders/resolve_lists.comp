@@ -28,55 +28,65 @@ float least_overlap(Node a, Node b) {
   return 1e-3 * min(a.z_length, b.z_length) + 4e-6 * max(abs(a.z_front), abs(b.z_front));
 }
 
-// The next piece of a pixel's list. What is left of its first two segments is kept in them.
+// How far lists have been walked to put back what is left of segments.
+int walked = 0;
+
+// Puts a segment into a list that is sorted by where segments begin; the list's head.
+uint insert(uint head, uint number, Node node) {
+  uint before = kNoNode, after = head;
+  while (after != kNoNode && nodes[after].z_front < node.z_front) {
+    before = after;
+    after = nodes[after].next;
+    ++walked;
+  }
+  node.next = after;
+  nodes[number] = node;
+  if (before == kNoNode) return number;
+  nodes[before].next = number;
+  return head;
+}
+
+// A stretch that the first two segments of a list share.
 struct Overlap {
-  float end;  // of the stretch that both segments share
-  int stage;  // 0: none; 1, 2: of the two other pieces there, the next one
+  float end;
+  int stage;  // 0: none; 1, 2: of its three pieces so many have been taken
 };
 
+// The next piece of a pixel's list. What is left of its segments is kept in them.
 Node take_piece(inout uint head, inout Overlap overlap) {
-  Node a = nodes[head];
+  uint first = head;
+  Node a = nodes[first];
   uint second = a.next;
   if (second == kNoNode) {
     head = kNoNode;
     return a;
   }
   Node b = nodes[second];
+  float least = least_overlap(a, b);
   if (overlap.stage == 1) {
     overlap.stage = 2;
     return part_of(b, b.z_front, overlap.end);
   }
   if (overlap.stage == 2) {
     overlap.stage = 0;
-    Node piece = part_of(a, a.z_front, overlap.end);
-    float least = least_overlap(a, b);
-    bool is_a_left = back_of(a) - overlap.end > least, is_b_left = back_of(b) - overlap.end > least;
-    if (is_b_left) nodes[second] = part_of(b, overlap.end, back_of(b));
-    if (is_a_left) {
-      a = part_of(a, overlap.end, back_of(a));
-      if (!is_b_left) a.next = b.next;
-      nodes[head] = a;
-    } else {
-      head = is_b_left ? second : b.next;
-    }
-    return piece;
+    head = b.next;
+    if (back_of(b) - overlap.end > least) head = insert(head, second, part_of(b, overlap.end, back_of(b)));
+    if (back_of(a) - overlap.end > least) head = insert(head, first, part_of(a, overlap.end, back_of(a)));
+    return part_of(a, a.z_front, overlap.end);
   }
-  float begin = max(a.z_front, b.z_front), end = min(back_of(a), back_of(b)), least = least_overlap(a, b);
-  if (end - begin <= least) {
+  if (back_of(a) - b.z_front <= least) {
     head = second;
     return a;
   }
-  if (begin - a.z_front > least) {
-    nodes[head] = part_of(a, begin, back_of(a));
-    return part_of(a, a.z_front, begin);
+  if (b.z_front - a.z_front > least) {
+    nodes[first] = part_of(a, b.z_front, back_of(a));
+    return part_of(a, a.z_front, b.z_front);
   }
-  if (begin - b.z_front > least) {
-    nodes[second] = part_of(b, begin, back_of(b));
-    return part_of(b, b.z_front, begin);
-  }
+  float end = min(back_of(a), back_of(b));
+  if (b.next != kNoNode && nodes[b.next].z_front - b.z_front > least) end = min(end, nodes[b.next].z_front);
   overlap = Overlap(end, 1);
   float middle = 0.5 * (a.z_front + end);
-  nodes[head] = part_of(a, middle, back_of(a));
+  nodes[first] = part_of(a, middle, back_of(a));
   return part_of(a, a.z_front, middle);
 }
 
@@ -93,7 +103,7 @@ void main() {
   vec4 sum = is_first ? kNothingYet : imageLoad(picture, pixel);
   Ray ray = ray_of(pixel);
   Overlap overlap = Overlap(0.0, 0);
-  for (int i = 0; (i < projection.segments_a_pass || overlap.stage > 0) && node != kNoNode; ++i) {
+  for (int i = 0; (i + walked < projection.segments_a_pass || overlap.stage > 0) && node != kNoNode; ++i) {
     Node passed = take_piece(node, overlap);
     Segment segment = Segment(passed.scalar_front, passed.scalar_back, passed.z_length * ray.world_per_z);
     Front front = front_at(segment.scalar_front);

@@ -9,10 +9,11 @@ const uint kNoItem = kNoNode;
 uint next_of(uint node) { return nodes[node].next; }
 void set_next(uint node, uint next) { nodes[node].next = next; }
 
-// By their middles: rounding of thin ones does not change that order.
+// By where they begin; of those that begin together the shorter one first.
 bool is_before(uint a, uint b) {
-  float middle_a = nodes[a].z_front + 0.5 * nodes[a].z_length, middle_b = nodes[b].z_front + 0.5 * nodes[b].z_length;
-  return middle_a < middle_b || (middle_a == middle_b && nodes[a].scalar_front < nodes[b].scalar_front);
+  if (nodes[a].z_front != nodes[b].z_front) return nodes[a].z_front < nodes[b].z_front;
+  if (nodes[a].z_length != nodes[b].z_length) return nodes[a].z_length < nodes[b].z_length;
+  return nodes[a].scalar_front < nodes[b].scalar_front;
 }
 
 #include "merge_sort.glsl"
