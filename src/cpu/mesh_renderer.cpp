@@ -109,14 +109,6 @@ Frame prepare_frame(const PreparedMesh& mesh, const Camera& camera, const Render
   return frame;
 }
 
-/// Whether segments may begin before the eye, or the plane of an orthographic camera.
-bool reaches_behind_eye(const PreparedMesh& mesh, const Frame& frame) {
-  if (!frame.camera.is_orthographic) return !frame.faces.empty();
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    if (frame.mesh.vertices[4 * i + 2] < frame.rays.grid.z_near) return true;
-  return false;
-}
-
 std::uint64_t bytes_of(const Frame& frame) {
   return frame.faces.size() * sizeof(BoundaryFace) + frame.bins.faces.size() * sizeof(BinnedFace) +
          (frame.rays.column_offset.size() + frame.rays.row_offset.size()) * 2 * sizeof(float);
@@ -326,8 +318,8 @@ void MeshRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   if (pass.has_effects) describe(settings, context, frame, illustration);
   if (settings.wants_depth) illustration.effects.depth = image.depth.data();
   illustration.effects.record = pass.record;
-  illustration.effects.is_whole =
-      settings.clipping.shapes.empty() && settings.surfaces.empty() && !reaches_behind_eye(mesh_, frame);
+  illustration.effects.is_whole = settings.clipping.shapes.empty() && settings.surfaces.empty() &&
+                                  !scene::reaches_behind_eye(frame.mesh.seen(), frame.camera, !frame.faces.empty());
 
   IntegratorTables tables{&antiderivative_, &control_points_,
                           settings.integrator == Integrator::kPartial ? &optics::transparency_table() : nullptr,

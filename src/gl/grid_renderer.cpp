@@ -230,13 +230,12 @@ void GridRenderer::march(const scene::GridView& view, const RenderSettings& sett
                          const scene::FrameContext& context, RenderStatistics& statistics) {
   Device& device = *device_;
   MarchKind kind = kind_of(settings);
-  kind.shader = takes_points(kind) ? IntegratorTables::point_shader() : device.tables.shader(settings, steps_.segments);
+  kind.shader = takes_points(kind) ? device.tables.points() : device.tables.shader(settings);
   device.values.volume().bind(kValueUnit);
   if (const Volume* squares = wants_squares(settings) ? device.values.squares(*context_) : nullptr) {
     squares->bind(kSquareUnit);
     kind.has_squares = true;
   }
-  device.tables.count_loops(settings, kind.shader);
   MarchBlock block = describe(view, settings);
   block.most_work = pieces_a_pass(kind.shader);
   MarchFrame frame{block, kind, device.frame, settings, context_->limits(), context.progress};
@@ -277,7 +276,10 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
   plan(settings);
   const double longest = settings.samples_per_voxel > 0.0 ? grid::mean_spacing(frame_) / settings.samples_per_voxel
                                                           : grid::longest_cell_diagonal(frame_);
-  device.tables.bind(settings, {longest, field_.kernel != nullptr}, context_->limits(), context.progress);
+  SegmentBounds segments = steps_.segments;
+  segments.longest = longest;
+  segments.may_overshoot = field_.kernel != nullptr;
+  device.tables.bind(settings, segments, context_->limits(), context.progress);
   statistics.plan_seconds = timer.seconds();
   const scene::GridView view = scene::make_grid_view(drawn(), frame_, camera, settings.width, settings.height);
   device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);

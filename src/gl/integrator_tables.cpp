@@ -18,15 +18,15 @@ constexpr GLuint kTablesBinding = 1;
 /// Samples that post-classification takes a piece: as integrators/post.glsl has it.
 constexpr int kSamplesAPiece = 16;
 
-const IntegratorShader kCell{"cell data", "integrators/cell.glsl", {}, 4};
-const IntegratorShader kPartial{"partial", "integrators/partial.glsl", {{"ISO_VALUES", "1"}}, 4};
-const IntegratorShader kTable3d{"table3d", "integrators/table3d.glsl", {}, 4};
-const IntegratorShader kCylindrical{"cylindrical", "integrators/cylindrical.glsl", {}, 4};
-const IntegratorShader kPost{"post", "integrators/post.glsl", {}, 4};
+const IntegratorShader kCell{"cell data", "integrators/cell.glsl", {}};
+const IntegratorShader kPartial{"partial", "integrators/partial.glsl", {{"ISO_VALUES", "1"}}};
+const IntegratorShader kTable3d{"table3d", "integrators/table3d.glsl", {}};
+const IntegratorShader kCylindrical{"cylindrical", "integrators/cylindrical.glsl", {}};
+const IntegratorShader kPost{"post", "integrators/post.glsl", {}};
 
 /// `has_coarse`: the table has places that are too coarse; `is_beyond`: scalars may lie beyond its ends.
 IntegratorShader antiderivative_shader(bool has_coarse, bool is_beyond) {
-  IntegratorShader shader{"antiderivative", "integrators/antiderivative.glsl", {}, 4};
+  IntegratorShader shader{"antiderivative", "integrators/antiderivative.glsl", {}};
   if (has_coarse) shader.defines.emplace_back("HAS_COARSE", "1");
   if (is_beyond) shader.defines.emplace_back("BEYOND", "1");
   for (const auto& [name, value] : shader.defines) shader.name += ", " + name;
@@ -35,7 +35,7 @@ IntegratorShader antiderivative_shader(bool has_coarse, bool is_beyond) {
 
 /// `is_whole`: no segment needs to be cut; `is_thin`: none is optically thicker than `kThin`.
 IntegratorShader gentle_shader(bool is_whole, bool is_thin) {
-  IntegratorShader shader{"gentle", "integrators/gentle.glsl", {}, 4};
+  IntegratorShader shader{"gentle", "integrators/gentle.glsl", {}};
   if (is_whole) shader.defines.emplace_back("IS_WHOLE", "1");
   if (is_thin) shader.defines.emplace_back("IS_THIN", "1");
   for (const auto& [name, value] : shader.defines) shader.name += ", " + name;
@@ -45,7 +45,7 @@ constexpr double kThin = 0.25;
 
 IntegratorShader polynomial_shader(int degree, OpacityModel opacity) {
   const std::string number = std::to_string(degree);
-  IntegratorShader shader{"polynomial=" + number, "integrators/polynomial.glsl", {{"DEGREE", number}}, 4};
+  IntegratorShader shader{"polynomial=" + number, "integrators/polynomial.glsl", {{"DEGREE", number}}};
   if (opacity == OpacityModel::kExponential) return shader;
   shader.name += ", linear";
   shader.defines.emplace_back("LINEAR_OPACITY", "1");
@@ -90,28 +90,28 @@ std::vector<IntegratorShader> bounded_integrator_shaders() {
           gentle_shader(true, true)};
 }
 
-IntegratorShader IntegratorTables::point_shader() { return kCell; }
+IntegratorShader point_shader() { return kCell; }
 
-void IntegratorTables::count_loops(const RenderSettings& settings, IntegratorShader& shader) const {
-  if (shader.file == kCell.file) shader.loops = std::max(4, 2 + probes_);
-  if (shader.file == kPost.file)
-    shader.loops = 4 + std::min(settings.samples, kSamplesAPiece) * (1 + std::max(probes_, 2));
-}
-
-IntegratorShader IntegratorTables::shader(const RenderSettings& settings) const {
-  IntegratorShader shader = sources_.is_constant ? kCell : shader_of(settings);
-  count_loops(settings, shader);
+IntegratorShader IntegratorTables::points() const {
+  IntegratorShader shader = kCell;
+  shader.loops = std::max(shader.loops, 2 + probes_);
   return shader;
 }
 
-IntegratorShader IntegratorTables::shader_of(const RenderSettings& settings) const {
+IntegratorShader IntegratorTables::shader(const RenderSettings& settings) const {
+  if (sources_.is_constant) return points();
   switch (settings.integrator) {
     case Integrator::kAntiderivative:
+      if (segments_.is_gentle && !is_beyond_)
+        return gentle_shader(segments_.error <= split_threshold_, segments_.depth <= kThin);
       return antiderivative_shader(antiderivative_.has_coarse, is_beyond_);
     case Integrator::kPartial:
       return kPartial;
-    case Integrator::kPost:
-      return kPost;
+    case Integrator::kPost: {
+      IntegratorShader shader = kPost;
+      shader.loops += std::min(settings.samples, kSamplesAPiece) * (1 + std::max(probes_, 2));
+      return shader;
+    }
     case Integrator::kTable3d:
       return kTable3d;
     case Integrator::kPolynomial:
@@ -122,12 +122,6 @@ IntegratorShader IntegratorTables::shader_of(const RenderSettings& settings) con
       break;
   }
   throw Error(ErrorCode::kUnsupported, "the integrator 'pre' is for grids: choose another (tetravox list methods)");
-}
-
-IntegratorShader IntegratorTables::shader(const RenderSettings& settings, const SegmentBounds& bounds) const {
-  const bool is_gentle =
-      settings.integrator == Integrator::kAntiderivative && !sources_.is_constant && bounds.is_gentle && !is_beyond_;
-  return is_gentle ? gentle_shader(bounds.error <= split_threshold_, bounds.depth <= kThin) : shader(settings);
 }
 
 double IntegratorTables::color_change(float min, float max) const {
@@ -179,8 +173,9 @@ void IntegratorTables::upload_control_points() {
   has_control_points_ = true;
 }
 
-void IntegratorTables::bind(const RenderSettings& settings, const SegmentTraits& segments, const Limits& limits,
+void IntegratorTables::bind(const RenderSettings& settings, const SegmentBounds& segments, const Limits& limits,
                             const Progress& progress) {
+  segments_ = segments;
   if (!has_control_points_) upload_control_points();
   points_.bind(kControlPointUnit);
   intervals_.bind(kFirstIntervalUnit);

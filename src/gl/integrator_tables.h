@@ -28,10 +28,13 @@ struct TableSources {
   bool is_constant = false;  ///< cell data: control points alone
 };
 
-/// What is known of a frame's segments.
-struct SegmentTraits {
+/// What holds for all segments of a frame. Where more is known than by default, a cheaper integrator may serve.
+struct SegmentBounds {
   double longest = 0.0;        ///< world length: tables of ray integrals reach as far
   bool may_overshoot = false;  ///< whether scalars may lie beyond the range of the data
+  bool is_gentle = false;      ///< whether they may be rounded to nodes of the table (`scene::BrickPlan::is_gentle`)
+  double depth = 0.0;          ///< gentle ones: largest optical depth
+  double error = 0.0;          ///< the same: largest of depth^2 times the change of colour
 };
 
 /// What `#include "integrator.glsl"` stands for in the shaders of a source.
@@ -39,17 +42,10 @@ struct IntegratorShader {
   std::string name;  ///< of its own for each variant
   std::string file;
   std::vector<std::pair<std::string, std::string>> defines;
-  int loops = 0;  ///< iterations of loops that a piece of a segment takes at most
+  int loops = 4;  ///< iterations of loops that a piece of a segment takes at most
 
   /// Makes the shader one that integrates so.
   void add_to(ShaderRecipe& recipe) const;
-};
-
-/// What holds for all segments of a frame.
-struct SegmentBounds {
-  bool is_gentle = false;  ///< whether scalars may be rounded to nodes of the table (`scene::BrickPlan::is_gentle`)
-  double depth = 0.0;      ///< largest optical depth
-  double error = 0.0;      ///< largest of depth^2 times the change of colour
 };
 
 /// Pieces of segments that one invocation of a shader may integrate, so that no pass takes long, which drivers with a
@@ -61,6 +57,8 @@ int pieces_a_pass(const IntegratorShader& shader);
 std::vector<IntegratorShader> all_integrator_shaders();
 /// Those that rely on bounds of segments.
 std::vector<IntegratorShader> bounded_integrator_shaders();
+/// Of points that are looked up one by one: cell data, and samples.
+IntegratorShader point_shader();
 
 /// The tables of one transfer function. With the context current.
 class IntegratorTables {
@@ -68,16 +66,13 @@ class IntegratorTables {
   void set_transfer_function(const OpticalFunction& function, const TableSources& sources);
   /// Puts on the device what the integrator of these settings needs and is not there yet, and binds it.
   /// @throws Error (kUnsupported) for tables larger than the device allows, before they are made.
-  void bind(const RenderSettings& settings, const SegmentTraits& segments, const Limits& limits,
+  void bind(const RenderSettings& settings, const SegmentBounds& segments, const Limits& limits,
             const Progress& progress);
-  /// Of the settings bound last. @throws Error (kUnsupported) for an integrator that this backend does not know.
+  /// Of the settings and segments bound last. @throws Error (kUnsupported) for an integrator that this backend does not
+  /// know.
   IntegratorShader shader(const RenderSettings& settings) const;
-  /// The same where more is known of the segments: a cheaper one, if they allow it.
-  IntegratorShader shader(const RenderSettings& settings, const SegmentBounds& bounds) const;
-  /// Of points that are looked up one by one: cell data, and samples.
-  static IntegratorShader point_shader();
-  /// Sets the loops of a shader that looks up control points: of the function, and of the settings' samples.
-  void count_loops(const RenderSettings& settings, IntegratorShader& shader) const;
+  /// `point_shader()` with the loops that the function asks for.
+  IntegratorShader points() const;
   const optics::ControlPointTable& control_points() const { return control_points_; }
   /// Stored scalars from node to node of the antiderivatives.
   float node_width() const { return 1.0f / antiderivative_.nodes_per_scalar; }
@@ -86,7 +81,6 @@ class IntegratorTables {
   std::uint64_t bytes() const;
 
  private:
-  IntegratorShader shader_of(const RenderSettings& settings) const;
   void upload_antiderivatives();
   void upload_control_points();
 
@@ -94,7 +88,8 @@ class IntegratorTables {
   TableSources sources_;
   optics::AntiderivativeTable antiderivative_;
   optics::ControlPointTable control_points_;
-  int probes_ = 0;                // halvings until the interval of a scalar is found
+  int probes_ = 0;  // halvings until the interval of a scalar is found
+  SegmentBounds segments_;
   double split_threshold_ = 0.0;  // of SegmentBounds::error
   bool is_beyond_ = false;        // whether scalars may lie beyond the table of antiderivatives
   bool has_antiderivatives_ = false, has_control_points_ = false;  // on the device

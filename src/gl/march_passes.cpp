@@ -62,7 +62,7 @@ bool takes_points(const MarchKind& kind) {
 std::vector<MarchKind> march_kinds() {
   std::vector<MarchKind> kinds;
   const auto add = [&](MarchKind kind) {
-    if (takes_points(kind)) kind.shader = IntegratorTables::point_shader();
+    if (takes_points(kind)) kind.shader = point_shader();
     kinds.push_back(kind);
   };
   const auto add_each_way = [&](MarchKind kind) {

@@ -34,8 +34,8 @@ MeshBuffers::MeshBuffers(const PreparedMesh& mesh, const Limits& limits) : mesh_
 scene::CameraFrame MeshBuffers::see(const Camera& camera, int width, int height) {
   scene::CameraFrame frame = scene::make_camera_frame(mesh_, camera, width, height);
   scene::transform_vertices(mesh_, frame, seen_.data());
-  const scene::SeenMesh seen{seen_.data(), static_cast<std::uint32_t>(mesh_.vertices.size() - 1), mesh_.cells.data()};
-  const std::vector<BoundaryFace> around = scene::find_eye_cell_faces(seen, mesh_.boundary, mesh_.cells.size(), frame);
+  const std::vector<BoundaryFace> around =
+      scene::find_eye_cell_faces(seen_mesh(), mesh_.boundary, mesh_.cells.size(), frame);
   vertices_.upload(GL_RGBA32F, seen_.data(), seen_.size() * sizeof(float));
   std::vector<BoundaryFace> faces = mesh_.boundary;
   faces.insert(faces.end(), around.begin(), around.end());
@@ -45,10 +45,11 @@ scene::CameraFrame MeshBuffers::see(const Camera& camera, int width, int height)
 }
 
 bool MeshBuffers::is_behind_eye(const scene::CameraFrame& frame) const {
-  if (!frame.is_orthographic) return face_count_ > mesh_.boundary.size();
-  for (std::size_t i = 0; i < mesh_.vertices.size(); ++i)
-    if (seen_[4 * i + 2] < frame.eye[2]) return true;
-  return false;
+  return scene::reaches_behind_eye(seen_mesh(), frame, face_count_ > mesh_.boundary.size());
+}
+
+scene::SeenMesh MeshBuffers::seen_mesh() const {
+  return {seen_.data(), static_cast<std::uint32_t>(mesh_.vertices.size() - 1), mesh_.cells.data()};
 }
 
 void MeshBuffers::bind() const {

@@ -6,6 +6,7 @@
 #include "src/gl/context.h"
 #include "src/gl/resources.h"
 #include "src/scene/camera_frame.h"
+#include "src/scene/eye_cells.h"
 #include "tetravox/mesh.h"
 
 #include <cstdint>
@@ -32,6 +33,8 @@ class MeshBuffers {
   std::uint64_t bytes() const;
 
  private:
+  scene::SeenMesh seen_mesh() const;
+
   const PreparedMesh& mesh_;
   std::vector<float> seen_;  ///< [vertices][4]
   std::size_t face_count_ = 0;

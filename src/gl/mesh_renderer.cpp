@@ -53,7 +53,7 @@ class MeshRenderer final : public scene::FrameRenderer {
     device.frame.begin(context_->limits(), frame, mesh_.world_per_local, settings);
     device.mesh.bind();
     const support::Timer timer;
-    device.tables.bind(settings, {longest_edge_, false}, context_->limits(), context.progress);
+    device.tables.bind(settings, {.longest = longest_edge_}, context_->limits(), context.progress);
     statistics.plan_seconds = timer.seconds();
     const IntegratorShader integrator = device.tables.shader(settings);
     if (settings.source.value_or(Source::kWalk) == Source::kWalk)

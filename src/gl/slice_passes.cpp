@@ -87,7 +87,8 @@ SlicePasses::Plan SlicePasses::make_plan(const SliceFrame& frame) const {
   else
     plan.family = make_slabs(frame.view, plan.request);
   const double longest = frame.view.world_per_local * longest_slab(frame.view, plan.request, plan.family);
-  frame.tables.bind(frame.settings, {longest, filters_slices(frame.settings)}, frame.context.limits(), frame.progress);
+  frame.tables.bind(frame.settings, {.longest = longest, .may_overshoot = filters_slices(frame.settings)},
+                    frame.context.limits(), frame.progress);
   if (plan.variant.classification == SliceClassification::kSegment)
     plan.integrator = frame.tables.shader(frame.settings);
   plan.slabs = make_triangles(frame.view, plan.request, plan.family, plan.variant.is_half_angle);

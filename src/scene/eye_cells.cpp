@@ -179,4 +179,11 @@ std::vector<BoundaryFace> find_eye_cell_faces(const SeenMesh& mesh, std::span<co
   return faces;
 }
 
+bool reaches_behind_eye(const SeenMesh& mesh, const CameraFrame& frame, bool is_in_cell) {
+  if (!frame.is_orthographic) return is_in_cell;
+  for (std::size_t i = 0; i <= mesh.last_vertex; ++i)
+    if (mesh.vertices[4 * i + 2] < frame.eye[2]) return true;
+  return false;
+}
+
 }  // namespace tetravox::scene

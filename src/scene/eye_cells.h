@@ -26,4 +26,8 @@ struct SeenMesh {
 std::vector<BoundaryFace> find_eye_cell_faces(const SeenMesh& mesh, std::span<const BoundaryFace> boundary,
                                               std::size_t cell_count, CameraFrame& frame);
 
+/// Whether rays may pass cells before they come to the eye, or to the plane of an orthographic camera.
+/// `is_in_cell`: whether there are faces of `find_eye_cell_faces`.
+bool reaches_behind_eye(const SeenMesh& mesh, const CameraFrame& frame, bool is_in_cell);
+
 }  // namespace tetravox::scene

@@ -170,18 +170,15 @@ class Walker : WalkLanes {
         part.length = hn::IfThenElseZero(hn::Gt(length_part, zero), part.length);
         integrate_part(s, part, from, to);
       };
-      if (HWY_UNLIKELY(is_cut)) {
-        integrate_intervals(s, z_back, segment, integrate);
-        light_.lose();
-      } else if (HWY_UNLIKELY(!integrator_.is_light_all(segment))) {
-        integrate(zero, one, one);
-        light_.lose();
-      } else if (is_followed()) {
+      if (is_followed())  // then nothing is cut or met
         integrate_followed(s, entered, d, {out_a, out_b, out_c}, segment, stretch_of);
-      } else {
+      else if (HWY_UNLIKELY(is_cut))
+        integrate_intervals(s, z_back, segment, integrate);
+      else if (HWY_LIKELY(integrator_.is_light_all(segment)))
         integrator_.integrate_lit_segment(
             segment, stretch_of, [&] { return view_rays(); }, s.front, s.sum);
-      }
+      else
+        integrate(zero, one, one);
     } else {
       const auto integrate = [&](Float from, Float to, Float length_part) {
         const Float rise = hn::Sub(segment.scalar_back, segment.scalar_front);
