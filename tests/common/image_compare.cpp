@@ -70,6 +70,16 @@ std::string describe(const ImageDifference& d) {
   return ::testing::AssertionSuccess();
 }
 
+int count_apart(const Image& first, const Image& second, double max) {
+  int count = 0;
+  for (std::size_t pixel = 0; pixel < first.pixels.size(); pixel += 4) {
+    float most = 0.0f;
+    for (std::size_t i = pixel; i < pixel + 4; ++i) most = std::max(most, std::abs(first.pixels[i] - second.pixels[i]));
+    count += most > max ? 1 : 0;
+  }
+  return count;
+}
+
 std::size_t count_covered(const Image& image) {
   std::size_t count = 0;
   for (std::size_t i = 3; i < image.pixels.size(); i += 4) count += image.pixels[i] > 0.0f;

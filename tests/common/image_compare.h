@@ -33,6 +33,9 @@ std::string describe(const ImageDifference& difference);
 /// Holds when every value is finite, opacity is in [0, 1], and each colour in [0, opacity] up to rounding.
 ::testing::AssertionResult is_valid_picture(const Image& image);
 
+/// Pixels of pictures of one size that differ by more than `max` in some channel.
+int count_apart(const Image& first, const Image& second, double max);
+
 /// Pixels with an opacity above 0.
 std::size_t count_covered(const Image& image);
 

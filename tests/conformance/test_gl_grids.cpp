@@ -25,16 +25,6 @@ constexpr int kApartOfThousand = 10;
 /// What both promise to err by (test_grid_pictures.cpp).
 constexpr double kMostWrong = 4e-3, kMostWrongRms = 3e-4;
 
-int count_apart(const Image& a, const Image& b) {
-  int count = 0;
-  for (std::size_t pixel = 0; pixel < a.pixels.size(); pixel += 4) {
-    float most = 0.0f;
-    for (std::size_t i = pixel; i < pixel + 4; ++i) most = std::max(most, std::abs(a.pixels[i] - b.pixels[i]));
-    count += most > kMostApart ? 1 : 0;
-  }
-  return count;
-}
-
 /// Two renderers of one grid.
 struct Pair {
   explicit Pair(const PreparedGrid& grid)
@@ -53,7 +43,8 @@ struct Pair {
     const bool is_sampled = settings.integrator == Integrator::kPost ||
                             (has_rate && (has_missing || settings.integrator == Integrator::kPre));
     if (is_sampled)
-      EXPECT_LE(1000 * count_apart(image, same), kApartOfThousand * image.width * image.height) << where;
+      EXPECT_LE(1000 * tests::count_apart(image, same, kMostApart), kApartOfThousand * image.width * image.height)
+          << where;
     else
       EXPECT_TRUE(tests::images_agree(image, same, kMostApart, kMostApartRms)) << where;
     EXPECT_EQ(drawn.backend, "gl");

@@ -67,16 +67,6 @@ constexpr double kMostApart = 3e-3, kMostApartRms = 3e-4;
 /// At a fixed rate the last sample of a ray is there or not: so many pixels of a thousand may differ by more.
 constexpr int kApartOfThousand = 10;
 
-int count_apart(const Image& a, const Image& b) {
-  int count = 0;
-  for (std::size_t pixel = 0; pixel < a.pixels.size(); pixel += 4) {
-    float most = 0.0f;
-    for (std::size_t i = pixel; i < pixel + 4; ++i) most = std::max(most, std::abs(a.pixels[i] - b.pixels[i]));
-    count += most > kMostApart ? 1 : 0;
-  }
-  return count;
-}
-
 RenderSettings table_settings(Integrator integrator) {
   RenderSettings settings = tests::make_settings(integrator, 64, 48);
   settings.use_early_ray_termination = false;
@@ -97,7 +87,9 @@ void expect_same_tables(const std::string& name, double samples_per_voxel) {
         const std::string where = name + " " + function + " " + camera_name + " " + name_of(integrator);
         EXPECT_TRUE(tests::is_valid_picture(image)) << where;
         if (samples_per_voxel > 0.0)
-          EXPECT_LE(1000 * count_apart(image, expected), kApartOfThousand * image.width * image.height) << where;
+          EXPECT_LE(1000 * tests::count_apart(image, expected, kMostApart),
+                    kApartOfThousand * image.width * image.height)
+              << where;
         else
           EXPECT_TRUE(tests::images_agree(image, expected, kMostApart, kMostApartRms)) << where;
       }
