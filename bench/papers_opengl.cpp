@@ -67,7 +67,7 @@ class DeviceTables {
     RenderSettings settings;
     settings.integrator = integrator;
     settings.preintegration = tables;
-    tetravox::gl::DeviceTable table = maker_->make(source_of(function), settings, context_->limits());
+    tetravox::gl::DeviceTable table = maker_->make(source_of(function), settings);
     glFinish();
     context_->require_no_error("tables");
     return table;

@@ -6,14 +6,6 @@ add_library(tetravox_flags INTERFACE)
 target_compile_features(tetravox_flags INTERFACE cxx_std_20)
 target_compile_options(tetravox_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror -ffp-contract=off -pthread)
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # Wrong about std::string (GCC bug 105651); so are others once its header is precompiled.
-  target_compile_options(tetravox_flags INTERFACE -Wno-restrict)
-  if(TETRAVOX_WITH_PRECOMPILED_HEADERS)
-    target_compile_options(tetravox_flags INTERFACE
-      -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
-  endif()
-endif()
 if(TETRAVOX_WITH_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Headers that do not fit the flags of a target are said to, and parsed again.
   target_compile_options(tetravox_flags INTERFACE -Wno-error=invalid-pch)

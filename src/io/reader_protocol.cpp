@@ -289,7 +289,7 @@ std::vector<std::string> format_request(const ReaderRequest& request) {
   if (options.time.value) out.push_back("time_value=" + format_double(*options.time.value));
   if (!options.grid_file.empty()) out.push_back("grid_file=" + options.grid_file);
   out.push_back("memory_limit=" + std::to_string(options.memory_limit));
-  if (options.only_info) out.push_back("only_info=1");
+  if (options.only_info) out.emplace_back("only_info=1");
   return out;
 }
 

@@ -90,16 +90,16 @@ void mend_orientation(GridShape& shape, std::vector<std::string>& notes) {
       is_mended = true;
     }
   }
-  if (is_mended) notes.push_back("a spacing that is zero or not finite is taken as 1");
+  if (is_mended) notes.emplace_back("a spacing that is zero or not finite is taken as 1");
   if (!is_invertible(shape.direction)) {
     shape.direction = GridShape{}.direction;
-    notes.push_back("the direction cannot be inverted and is taken as the identity");
+    notes.emplace_back("the direction cannot be inverted and is taken as the identity");
   }
   const bool has_origin =
       std::all_of(shape.origin.begin(), shape.origin.end(), [](double x) { return std::isfinite(x); });
   if (!has_origin) {
     shape.origin = {};
-    notes.push_back("the origin is not finite and is taken as 0");
+    notes.emplace_back("the origin is not finite and is taken as 0");
   }
 }
 

@@ -55,7 +55,7 @@ void add_uniform_array(DatasetInfo& info) {
   uniform.magnitude_range = {1.0, 1.0};
   uniform.component_ranges = {uniform.magnitude_range};
   info.arrays.push_back(uniform);
-  info.notes.push_back("no point or cell arrays: drawn as a homogeneous body");
+  info.notes.emplace_back("no point or cell arrays: drawn as a homogeneous body");
 }
 
 bool is_single_slice(const FileContents& contents) {

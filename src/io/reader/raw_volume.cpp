@@ -215,7 +215,7 @@ FileContents read_raw_volume(const RawVolume& volume, const std::string& path, c
   if (volume.is_text)
     read_text(volume, values, path);
   else if (const std::uint64_t rest = read_binary(volume, contents.time_index, values); rest > 0)
-    contents.notes.push_back("the data file goes on behind the volume, which its header may state too small");
+    contents.notes.emplace_back("the data file goes on behind the volume, which its header may state too small");
   set_frame(*image, volume.frame, contents.notes);
   contents.blocks.emplace_back(image);
   return contents;

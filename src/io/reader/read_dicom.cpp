@@ -172,7 +172,7 @@ void place_by_position(Volume& volume, const Vector3& normal, std::vector<std::s
   if (is_even)
     volume.coordinates.clear();
   else
-    notes.push_back("the distances of the slices differ; each is drawn where it is");
+    notes.emplace_back("the distances of the slices differ; each is drawn where it is");
 }
 
 Volume place_slices(const std::vector<const DicomFile*>& files, std::vector<std::string>& notes) {
@@ -301,9 +301,9 @@ void convert_slice(const Slice& slice, ScalarType type, void* out) {
 }
 
 void add_remarks(const DicomFile& file, std::uint64_t without_image, std::vector<std::string>& notes) {
-  if (file.photometric == "MONOCHROME1") notes.push_back("MONOCHROME1: small values are bright in this file");
-  if (file.photometric == "PALETTE COLOR") notes.push_back("values are places in the file's palette");
-  if (file.photometric.starts_with("YBR")) notes.push_back("values are luminance and colour differences");
+  if (file.photometric == "MONOCHROME1") notes.emplace_back("MONOCHROME1: small values are bright in this file");
+  if (file.photometric == "PALETTE COLOR") notes.emplace_back("values are places in the file's palette");
+  if (file.photometric.starts_with("YBR")) notes.emplace_back("values are luminance and colour differences");
   if (without_image > 0) notes.push_back(std::to_string(without_image) + " files without an image are left out");
 }
 

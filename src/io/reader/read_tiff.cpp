@@ -302,8 +302,8 @@ FileContents read_tiff(const std::string& path) {
     read_pixels(file->get(), pages[k], values.subspan(k * plane, plane));
     send_progress(0.9 * static_cast<double>(k + 1) / static_cast<double>(pages.size()));
   }
-  if (first.photometric == PHOTOMETRIC_MINISWHITE) contents.notes.push_back("small values are bright in this file");
-  if (first.photometric == PHOTOMETRIC_PALETTE) contents.notes.push_back("values are places in the file's palette");
+  if (first.photometric == PHOTOMETRIC_MINISWHITE) contents.notes.emplace_back("small values are bright in this file");
+  if (first.photometric == PHOTOMETRIC_PALETTE) contents.notes.emplace_back("values are places in the file's palette");
   set_frame(*image, frame, contents.notes);
   contents.blocks.emplace_back(image);
   return contents;

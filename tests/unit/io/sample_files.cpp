@@ -167,10 +167,10 @@ void write_pvd(const fs::path& directory) {
 }
 
 std::string legacy_data() {
-  return std::string(
-             "CELL_DATA 2\nSCALARS C int 1\nLOOKUP_TABLE default\n5 7\nPOINT_DATA 12\nSCALARS S float 1\n"
-             "LOOKUP_TABLE default\n") +
-         kValues;
+  std::string text =
+      "CELL_DATA 2\nSCALARS C int 1\nLOOKUP_TABLE default\n5 7\nPOINT_DATA 12\nSCALARS S float 1\n"
+      "LOOKUP_TABLE default\n";
+  return text += kValues;
 }
 
 void write_legacy_text(const fs::path& directory) {
