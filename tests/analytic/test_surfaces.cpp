@@ -242,6 +242,38 @@ TEST_P(Surfaces, SheetsAndVolumeAreCompositedInOrder) {
   }
 }
 
+/// Rays travel side by side: those that meet a surface must not change what the others gather.
+TEST(SurfacesInMeshes, RaysThatMeetNoneAreAsWithout) {
+  const tests::Body body = make_cube(false, 12, norm);
+  const OpticalFunction function{
+      {{0.0, 1.5, {0.9, 0.6, 0.3}}, {0.8, 0.2, {0.2, 0.6, 0.9}}, {1.8, 1.1, {0.9, 0.9, 0.1}}}};
+  for (const Integrator integrator : tests::kAllIntegrators) {
+    RenderSettings settings = tests::make_settings(integrator, 101, 83);
+    for (const auto& [name, camera] : standard_cameras()) {
+      settings.surfaces.clear();
+      const Image without = body.draw(function, camera, settings);
+      settings.surfaces = {{kRadius, {0.9, 0.2, 0.1}, {0.1, 0.3, 0.8}, 0.5, true}};
+      const Image with = body.draw(function, camera, settings);
+      int same = 0, other = 0;
+      for (int y = 0; y < with.height; ++y)
+        for (int x = 0; x < with.width; ++x) {
+          const Ray ray = make_ray(camera, with.width, with.height, x, y);
+          const bool is_same = std::equal(with.pixel(x, y), with.pixel(x, y) + 4, without.pixel(x, y));
+          if (!hit_sphere(ray, kRadius)) {
+            EXPECT_TRUE(is_same) << name << " " << x << " " << y;
+            ++same;
+          } else if (!is_same) {
+            ++other;
+          }
+        }
+      if (norm(camera.position) > kRadius) {
+        EXPECT_GT(same, 1000) << name;
+      }
+      EXPECT_GT(other, 500) << name;
+    }
+  }
+}
+
 TEST_P(Surfaces, SheetsInTheLatticesPlanesAreMetOnce) {
   // The values are those at planes of points, exactly.
   const LinearField field{0.5, {0.25, 0, 0}};

@@ -37,12 +37,26 @@ class EffectIntegrator {
       : pieces_(tables),
         effects_(*tables.effects),
         is_light_cut_(effects_.longest_lit > 0.0f || effects_.largest_lit > 0.0f),
-        is_light_all_(!kIsOfDomain && effects_.shading && !is_light_cut_ && !pieces_.is_weighted() && !effects_.depth &&
-                      !effects_.record),
+        wants_faces_(kIsOfDomain || effects_.shading || effects_.weight_by_gradient > 0.0f),
+        is_plain_(!kIsOfDomain && !is_light_cut_ && !pieces_.is_weighted() && !effects_.depth && !effects_.record),
+        is_light_all_(is_plain_ && effects_.shading),
         is_lit_from_eye_(effects_.shading && is_lit_from_eye(*effects_.shading)) {}
 
   HWY_INLINE Front front_at(Float scalar) const { return base().front_at(scalar); }
   static HWY_INLINE void replace_front(Mask mask, const Front& from, Front& to) { Base::replace_front(mask, from, to); }
+
+  /// Whether stretches are asked for more than the scalar along them.
+  HWY_INLINE bool wants_faces() const { return wants_faces_; }
+
+  /// Whether a linear stretch is all volume, and unlit: then `integrate_volume_segment` serves.
+  HWY_INLINE bool is_volume_all(const Segments& segment) const {
+    return is_plain_ && !effects_.shading && !meets_surface(effects_, segment);
+  }
+
+  /// A whole linear stretch, to the bit what `integrate_stretch` finds.
+  HWY_INLINE void integrate_volume_segment(const Segments& segment, Front& front, Accumulated& sum) const {
+    if constexpr (!kIsOfDomain) base().integrate(segment, front, sum);
+  }
 
   /// Whether linear stretches without surfaces need light, and nothing else: then `integrate_lit_segment` serves.
   HWY_INLINE bool is_light_all(const Segments& segment) const {
@@ -328,7 +342,7 @@ class EffectIntegrator {
 
   PieceIntegrator<Base> pieces_;
   const Effects& effects_;
-  bool is_light_cut_, is_light_all_, is_lit_from_eye_;
+  bool is_light_cut_, wants_faces_, is_plain_, is_light_all_, is_lit_from_eye_;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -132,8 +132,9 @@ class Walker : WalkLanes {
     rank = hn::Add(rank, hn::IfThenElseZero(hn::Lt(d, replaced), hn::Set(kUint, 1)));
     const Uint neighbour = hn::GatherIndex(kUint, links, hn::BitCast(kInt, hn::Add(five_cells, rank)));
 
-    PassedFace entered;
-    if constexpr (kHasEffects) note_face(s, entered);
+    PassedFace& entered = entered_;
+    if constexpr (kHasEffects)
+      if (integrator_.wants_faces()) note_face(s, entered);
     replace_vertex(s, out_a, out_b, out_c, d, x, y, vertex, product);
 
     // Depth and scalar where the ray leaves.
@@ -177,6 +178,8 @@ class Walker : WalkLanes {
       else if (HWY_LIKELY(integrator_.is_light_all(segment)))
         integrator_.integrate_lit_segment(
             segment, stretch_of, [&] { return view_rays(); }, s.front, s.sum);
+      else if (HWY_LIKELY(integrator_.is_volume_all(segment)))
+        integrator_.integrate_volume_segment(segment, s.front, s.sum);
       else
         integrate(zero, one, one);
     } else {
@@ -383,6 +386,7 @@ class Walker : WalkLanes {
 
   Integrator integrator_;
   FollowedLight light_;  // of rays with effects
+  PassedFace entered_;   // of the step at hand, where the integrator wants it
   std::uint64_t steps_ = 0;
   WalkStatistics statistics_;
 };
