@@ -1,5 +1,6 @@
 #include "apps/tetravox/backend.h"
 
+#include "apps/tetravox/method_choice.h"
 #include "tetravox/error.h"
 #include "tetravox/render.h"
 
@@ -18,10 +19,10 @@ Renderer make_gl(const PreparedGrid& grid, const GlOptions& options) { return ma
 
 }  // namespace
 
-Renderer make_renderer(const Body& body, const MethodOptions& method) {
+Renderer make_renderer(const Body& body, const MethodOptions& method, const RenderSettings& settings) {
   return std::visit(
       [&](const auto& prepared) {
-        return method.use_gl ? make_gl(prepared, {method.gl_device.value_or(-1)}) : Renderer(prepared);
+        return draws_by_gl(method, settings) ? make_gl(prepared, {method.gl_device.value_or(-1)}) : Renderer(prepared);
       },
       body);
 }
@@ -35,10 +36,11 @@ std::vector<std::pair<std::string, std::string>> device_names() {
 
 #else
 
-Renderer make_renderer(const Body& body, const MethodOptions& method) {
-  if (method.use_gl)
+Renderer make_renderer(const Body& body, const MethodOptions& method, const RenderSettings& settings) {
+  if (draws_by_gl(method, settings))
     throw Error(ErrorCode::kUnsupported,
-                "this tetravox was built without OpenGL: draw with --backend cpu, or build with TETRAVOX_WITH_GL=ON");
+                "this tetravox was built without OpenGL: draw with --backend cpu and a source of it, or build with "
+                "TETRAVOX_WITH_GL=ON");
   return std::visit([](const auto& prepared) { return Renderer(prepared); }, body);
 }
 

@@ -14,7 +14,7 @@
 namespace tetravox::tool {
 
 /// A renderer of the backend that is asked for. @throws Error, also where this build has none of OpenGL.
-Renderer make_renderer(const Body& body, const MethodOptions& method);
+Renderer make_renderer(const Body& body, const MethodOptions& method, const RenderSettings& settings);
 
 /// Backends with their sources, and the integrators of each.
 std::vector<std::pair<std::string, std::string>> method_rows();

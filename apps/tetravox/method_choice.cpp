@@ -81,11 +81,12 @@ void check_tables(const PreintegrationOptions& tables, const RenderSettings& set
               "it is for --preintegration-device cpu");
 }
 
-void check_backend(const MethodOptions& method, Source source, UnusedOptions& unused) {
-  unused.note(method.gl_device.has_value(), method.use_gl, "--gl-device", "it is for --backend gl");
-  unused.note(method.entry_order.has_value(), method.use_gl && source == Source::kWalk, "--entry-order",
+void check_backend(const MethodOptions& method, const RenderSettings& settings, Source source, UnusedOptions& unused) {
+  const bool is_gl = draws_by_gl(method, settings);
+  unused.note(method.gl_device.has_value(), is_gl, "--gl-device", "it is for --backend gl");
+  unused.note(method.entry_order.has_value(), is_gl && source == Source::kWalk, "--entry-order",
               "it is for meshes by --backend gl and the source walk");
-  unused.note(!method.instruction_set.empty(), !method.use_gl, "--instruction-set", "it is for --backend cpu");
+  unused.note(!method.instruction_set.empty(), !is_gl, "--instruction-set", "it is for --backend cpu");
 }
 
 void check_slices(const MethodOptions& method, const RenderSettings& settings, Source source, UnusedOptions& unused) {
@@ -209,6 +210,16 @@ void override_method(const MethodOptions& method, RenderSettings& settings) {
   settings.instruction_set = method.instruction_set;
 }
 
+bool draws_by_gl(const MethodOptions& method, const RenderSettings& settings) {
+  if (method.use_gl) return *method.use_gl;
+  using enum Source;
+  using enum Integrator;
+  const Integrator integrator = settings.integrator;
+  const bool is_by_table = integrator == kTable3d || integrator == kPolynomial || integrator == kCylindrical;
+  if (is_by_table && settings.preintegration.device == TableDevice::kGpu) return true;
+  return settings.source == kProject || settings.source == kVicp || settings.source == kSlices;
+}
+
 std::vector<std::string> check_method(const MethodOptions& method, const RenderSettings& settings, bool is_grid,
                                       const std::string& data_name) {
   const auto require = [&](bool is_suitable, bool is_option, const char* option, const char* key) {
@@ -227,7 +238,7 @@ std::vector<std::string> check_method(const MethodOptions& method, const RenderS
 
   const Source source = settings.source.value_or(is_grid ? Source::kMarch : Source::kWalk);
   UnusedOptions unused;
-  check_backend(method, source, unused);
+  check_backend(method, settings, source, unused);
   check_tables(method.preintegration, settings, unused);
   check_slices(method, settings, source, unused);
   check_samples(method, settings, source, unused);

@@ -24,6 +24,10 @@ void require_consistent(const MethodOptions& method);
 /// Puts the options over the scene's settings. "preintegrated" keeps a pre-integrating integrator of the scene.
 void override_method(const MethodOptions& method, RenderSettings& settings);
 
+/// Whether OpenGL draws: where that is asked for, or where nothing is and only OpenGL has the source or what makes the
+/// tables.
+bool draws_by_gl(const MethodOptions& method, const RenderSettings& settings);
+
 /// Options that change nothing here, one line each. `data_name` is for messages.
 /// @throws UsageError (an option) or Error (the scene) for what is not for this kind of data: the picture would not be
 /// what was asked.

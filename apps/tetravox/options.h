@@ -83,7 +83,7 @@ struct PreintegrationOptions {
 };
 
 struct MethodOptions {
-  bool use_gl = false;
+  std::optional<bool> use_gl;
   std::optional<int> gl_device;
   std::optional<EntryOrder> entry_order;
   std::optional<SourceChoice> source;

@@ -121,7 +121,8 @@ bool parse_backend(const std::string& option, const std::string& text) {
 void add_method(CLI::App& app, RenderOptions& options) {
   MethodOptions& method = options.method;
   begin_group(app, "Method");
-  add(app, "--backend", "cpu|gl", "What draws: vector code on all cores (default), or OpenGL",
+  add(app, "--backend", "cpu|gl",
+      "What draws: vector code on all cores (default), or OpenGL (default for what it alone has)",
       store(method.use_gl, parse_backend));
   add(app, "--gl-device", "N", "Device that draws (tetravox list devices; default: the first that is no software)",
       store(method.gl_device, integer(0, kMostDevices)));

@@ -178,7 +178,7 @@ void complete_job(const RenderOptions& options, Job& job) {
 }
 
 Image draw(const RenderOptions& options, Job& job, Talk& talk) {
-  Renderer renderer = make_renderer(job.body, options.method);
+  Renderer renderer = make_renderer(job.body, options.method, job.input.scene.settings);
   job.parts.attach(renderer);
   Stopwatch watch;
   renderer.set_transfer_function(job.completed.optical_function);

@@ -54,8 +54,6 @@ TEST_F(Backends, WhatItCannotDrawIsRefusedByName) {
 }
 
 TEST_F(Backends, TablesAreMadeOnTheDeviceOrByTheCpu) {
-  expect_error(run({"render", "builtin:sphere", "--integrator", "table3d", "--preintegration-device", "gpu"}), 1,
-               {"on the GPU", "--backend gl"});
   expect_error(run({"render", "builtin:sphere", "--backend", "cpu", "--integrator", "polynomial=2",
                     "--preintegration-device", "gpu"}),
                1, {"on the GPU", "--backend gl"});
@@ -69,6 +67,27 @@ TEST_F(Backends, TablesAreMadeOnTheDeviceOrByTheCpu) {
     EXPECT_EQ(result.err, "");
   }
   EXPECT_TRUE(tests::images_agree(tests::read_picture(path("gpu.npy")), tests::read_picture(path("cpu.npy")), 2e-5));
+}
+
+TEST_F(Backends, WhatOpenGlAloneHasNeedsNoOption) {
+  if (!has_device()) GTEST_SKIP() << "there is no device with OpenGL 4.5 by EGL";
+  const std::vector<std::vector<std::string>> cases = {
+      {"builtin:sphere", "--source", "project"},
+      {"builtin:sphere", "--source", "vicp"},
+      {"builtin:hydrogen", "--source", "slices=view-3d"},
+      {"builtin:sphere", "--integrator", "polynomial=2", "--preintegration-device", "gpu"}};
+  for (const std::vector<std::string>& options : cases) {
+    std::vector<std::string> first{"render", "--resolution", "60,50", "-o", "first.png"};
+    first.insert(first.end(), options.begin(), options.end());
+    const Result drawn = run(first);
+    ASSERT_EQ(drawn.code, 0) << drawn.err;
+    // A picture carries its scene, whatever has drawn it.
+    const Result again = run({"render", "first.png", "-o", "again.png", "--statistics", "again.json"});
+    ASSERT_EQ(again.code, 0) << again.err;
+    EXPECT_EQ(nlohmann::json::parse(read("again.json")).at("backend"), "gl");
+    EXPECT_EQ(read("again.png"), read("first.png")) << options[2];
+  }
+  expect_error(run({"render", "builtin:sphere", "--backend", "cpu", "--source", "project"}), 1, {"--backend gl"});
 }
 
 TEST_F(Backends, OptionsOfOpenGlSayThatTheyChangeNothingElsewhere) {
@@ -138,8 +157,10 @@ TEST_F(Backends, RefusalsNameWhatHelps) {
     return run(arguments);
   };
   for (const std::string source : {"project", "vicp"})
-    expect_error(draw({"builtin:sphere", "--source", source}), 1, {"'" + source + "'", "--backend gl", "'walk'"});
-  expect_error(draw({"builtin:hydrogen", "--source", "slices"}), 1, {"'slices'", "--backend gl", "'march'"});
+    expect_error(draw({"builtin:sphere", "--backend", "cpu", "--source", source}), 1,
+                 {"'" + source + "'", "--backend gl", "'walk'"});
+  expect_error(draw({"builtin:hydrogen", "--backend", "cpu", "--source", "slices"}), 1,
+               {"'slices'", "--backend gl", "'march'"});
   expect_error(draw({"builtin:hydrogen", "--shadows", "half-angle"}), 1, {"'slices'", "--backend gl"});
   if (!has_device()) GTEST_SKIP() << "there is no device with OpenGL 4.5 by EGL";
   expect_error(draw({"builtin:sphere", "--backend", "gl", "--isosurface", "0.5"}), 1,
