@@ -10,6 +10,11 @@ if(TETRAVOX_WITH_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Headers that do not fit the flags of a target are said to, and parsed again.
   target_compile_options(tetravox_flags INTERFACE -Wno-error=invalid-pch)
 endif()
+# With sanitizers GCC 12 takes parts of the standard library's regular expressions for uninitialised; its manual warns of
+# such false alarms.
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(tetravox_flags INTERFACE -Wno-maybe-uninitialized)
+endif()
 
 find_package(TBB REQUIRED)
 tetravox_add_precompiled(library POSITION_INDEPENDENT

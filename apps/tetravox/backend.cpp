@@ -19,10 +19,12 @@ Renderer make_gl(const PreparedGrid& grid, const GlOptions& options) { return ma
 
 }  // namespace
 
-Renderer make_renderer(const Body& body, const MethodOptions& method, const RenderSettings& settings) {
+Renderer make_renderer(const Body& body, const MethodOptions& method, const Scene& scene) {
   return std::visit(
       [&](const auto& prepared) {
-        return draws_by_gl(method, settings) ? make_gl(prepared, {method.gl_device.value_or(-1)}) : Renderer(prepared);
+        return draws_by_gl(method, scene.settings, scene.data.array.association)
+                   ? make_gl(prepared, {method.gl_device.value_or(-1)})
+                   : Renderer(prepared);
       },
       body);
 }
@@ -36,11 +38,11 @@ std::vector<std::pair<std::string, std::string>> device_names() {
 
 #else
 
-Renderer make_renderer(const Body& body, const MethodOptions& method, const RenderSettings& settings) {
-  if (draws_by_gl(method, settings))
+Renderer make_renderer(const Body& body, const MethodOptions& method, const Scene& scene) {
+  if (draws_by_gl(method, scene.settings, scene.data.array.association))
     throw Error(ErrorCode::kUnsupported,
-                "this tetravox was built without OpenGL: draw with --backend cpu and a source of it, or build with "
-                "TETRAVOX_WITH_GL=ON");
+                "this tetravox was built without OpenGL: draw with --backend cpu, a source of it and "
+                "--preintegration-device cpu, or build with TETRAVOX_WITH_GL=ON");
   return std::visit([](const auto& prepared) { return Renderer(prepared); }, body);
 }
 

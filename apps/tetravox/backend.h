@@ -6,6 +6,7 @@
 #include "apps/tetravox/options.h"
 
 #include "tetravox/render.h"
+#include "tetravox/scene.h"
 
 #include <string>
 #include <utility>
@@ -13,8 +14,8 @@
 
 namespace tetravox::tool {
 
-/// A renderer of the backend that is asked for. @throws Error, also where this build has none of OpenGL.
-Renderer make_renderer(const Body& body, const MethodOptions& method, const RenderSettings& settings);
+/// A renderer of the backend that `draws_by_gl` names. @throws Error, also where this build has none of OpenGL.
+Renderer make_renderer(const Body& body, const MethodOptions& method, const Scene& scene);
 
 /// Backends with their sources, and the integrators of each.
 std::vector<std::pair<std::string, std::string>> method_rows();

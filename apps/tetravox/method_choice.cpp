@@ -1,5 +1,6 @@
 #include "apps/tetravox/method_choice.h"
 
+#include "apps/tetravox/body.h"
 #include "tetravox/error.h"
 
 #include <algorithm>
@@ -81,8 +82,7 @@ void check_tables(const PreintegrationOptions& tables, const RenderSettings& set
               "it is for --preintegration-device cpu");
 }
 
-void check_backend(const MethodOptions& method, const RenderSettings& settings, Source source, UnusedOptions& unused) {
-  const bool is_gl = draws_by_gl(method, settings);
+void check_backend(const MethodOptions& method, bool is_gl, Source source, UnusedOptions& unused) {
   unused.note(method.gl_device.has_value(), is_gl, "--gl-device", "it is for --backend gl");
   unused.note(method.entry_order.has_value(), is_gl && source == Source::kWalk, "--entry-order",
               "it is for meshes by --backend gl and the source walk");
@@ -210,18 +210,20 @@ void override_method(const MethodOptions& method, RenderSettings& settings) {
   settings.instruction_set = method.instruction_set;
 }
 
-bool draws_by_gl(const MethodOptions& method, const RenderSettings& settings) {
+bool draws_by_gl(const MethodOptions& method, const RenderSettings& settings, std::optional<Association> association) {
   if (method.use_gl) return *method.use_gl;
   using enum Source;
   using enum Integrator;
   const Integrator integrator = settings.integrator;
   const bool is_by_table = integrator == kTable3d || integrator == kPolynomial || integrator == kCylindrical;
-  if (is_by_table && settings.preintegration.device == TableDevice::kGpu) return true;
+  const bool is_constant = association == Association::kCell || settings.filter.kind == FilterKind::kNearest;
+  if (is_by_table && !is_constant && settings.preintegration.device == TableDevice::kGpu) return true;
   return settings.source == kProject || settings.source == kVicp || settings.source == kSlices;
 }
 
-std::vector<std::string> check_method(const MethodOptions& method, const RenderSettings& settings, bool is_grid,
-                                      const std::string& data_name) {
+std::vector<std::string> check_method(const MethodOptions& method, const RenderSettings& settings,
+                                      const Dataset& dataset, const std::string& data_name) {
+  const bool is_grid = dataset.is_grid();
   const auto require = [&](bool is_suitable, bool is_option, const char* option, const char* key) {
     if (!is_suitable) refuse(is_option, option, key, is_grid, data_name);
   };
@@ -238,7 +240,7 @@ std::vector<std::string> check_method(const MethodOptions& method, const RenderS
 
   const Source source = settings.source.value_or(is_grid ? Source::kMarch : Source::kWalk);
   UnusedOptions unused;
-  check_backend(method, settings, source, unused);
+  check_backend(method, draws_by_gl(method, settings, array_of(dataset).association), source, unused);
   check_tables(method.preintegration, settings, unused);
   check_slices(method, settings, source, unused);
   check_samples(method, settings, source, unused);

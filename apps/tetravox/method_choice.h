@@ -4,8 +4,10 @@
 
 #include "apps/tetravox/options.h"
 
+#include "tetravox/dataset.h"
 #include "tetravox/render.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,13 +27,13 @@ void require_consistent(const MethodOptions& method);
 void override_method(const MethodOptions& method, RenderSettings& settings);
 
 /// Whether OpenGL draws: where that is asked for, or where nothing is and only OpenGL has the source or what makes the
-/// tables.
-bool draws_by_gl(const MethodOptions& method, const RenderSettings& settings);
+/// tables. `association`: of the array that is drawn; constant cells need no tables.
+bool draws_by_gl(const MethodOptions& method, const RenderSettings& settings, std::optional<Association> association);
 
 /// Options that change nothing here, one line each. `data_name` is for messages.
 /// @throws UsageError (an option) or Error (the scene) for what is not for this kind of data: the picture would not be
 /// what was asked.
-std::vector<std::string> check_method(const MethodOptions& method, const RenderSettings& settings, bool is_grid,
-                                      const std::string& data_name);
+std::vector<std::string> check_method(const MethodOptions& method, const RenderSettings& settings,
+                                      const Dataset& dataset, const std::string& data_name);
 
 }  // namespace tetravox::tool

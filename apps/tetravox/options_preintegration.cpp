@@ -51,7 +51,7 @@ void add_integrator(CLI::App& app, MethodOptions& method) {
         constexpr int kBits[] = {8, 12, 16, 32};
         tables.bits = kBits[parse_choice(option, text, {"8", "12", "16", "32"})];
       });
-  add(app, "--preintegration-device", "cpu|gpu", "What makes tables: cpu (default), or what draws with --backend gl",
+  add(app, "--preintegration-device", "cpu|gpu", "What makes tables: cpu (default), or what draws by OpenGL",
       store(tables.device, named(table_device_from_name)));
   add(app, "--preintegration-incremental", "on|off", "Make entries of a table from each other (default: on)",
       store(tables.use_incremental, parse_switch));

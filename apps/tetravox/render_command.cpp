@@ -141,7 +141,7 @@ void load_body(const RenderOptions& options, Job& job, Talk& talk) {
   statistics.read_seconds = watch.lap();
   talk.detail("read " + format_count(dataset.info.cell_count) + " cells in " + format_seconds(statistics.read_seconds));
   const RenderSettings& settings = job.input.scene.settings;
-  for (const std::string& line : check_method(options.method, settings, dataset.is_grid(), job.input.data_path))
+  for (const std::string& line : check_method(options.method, settings, dataset, job.input.data_path))
     talk.warn("warning: " + line);
   for (const std::string& line : check_effects(options.effects, settings)) talk.warn("warning: " + line);
   for (const std::string& line :
@@ -178,7 +178,7 @@ void complete_job(const RenderOptions& options, Job& job) {
 }
 
 Image draw(const RenderOptions& options, Job& job, Talk& talk) {
-  Renderer renderer = make_renderer(job.body, options.method, job.input.scene.settings);
+  Renderer renderer = make_renderer(job.body, options.method, job.input.scene);
   job.parts.attach(renderer);
   Stopwatch watch;
   renderer.set_transfer_function(job.completed.optical_function);

@@ -48,7 +48,8 @@ void PreintegrationCache::prepare(const optics::PreintegrationSource& source, co
   const PreintegrationSettings asked = relevant(settings.preintegration, settings.integrator);
   if (settings.preintegration.device == TableDevice::kGpu)
     throw Error(ErrorCode::kUnsupported,
-                "tables are made on the GPU by the OpenGL backend only: draw with --backend gl");
+                "tables are made on the GPU by the OpenGL backend only: draw with --backend gl, or with "
+                "--preintegration-device cpu");
   if (integrator_ == settings.integrator && settings_ == asked && longest_ == source.longest) return;
   invalidate();
   if (settings.integrator != Integrator::kTable3d) table_ = {};

@@ -21,11 +21,11 @@ struct Name {
 constexpr std::array<Name<Source>, 5> kSources{
     {{Source::kWalk, "walk", "meshes: ray casting from cell to cell (Garrity 1990; Weiler et al. 2003)"},
      {Source::kProject, "project",
-      "meshes, --backend gl: projected tetrahedra (Shirley and Tuchman 1990; Wilhelms and Van Gelder 1991)"},
-     {Source::kVicp, "vicp", "meshes, --backend gl: view-independent cell projection (Weiler, Kraus, Merz, Ertl 2003)"},
+      "meshes, by OpenGL: projected tetrahedra (Shirley and Tuchman 1990; Wilhelms and Van Gelder 1991)"},
+     {Source::kVicp, "vicp", "meshes, by OpenGL: view-independent cell projection (Weiler, Kraus, Merz, Ertl 2003)"},
      {Source::kMarch, "march", "grids: ray casting brick by brick (Grimm, Bruckner, Kanitsar, Groeller 2004)"},
      {Source::kSlices, "slices",
-      "grids, --backend gl: slabs between slices, blended; slices=KIND (Engel and Ertl 2002)"}}};
+      "grids, by OpenGL: slabs between slices, blended; slices=KIND (Engel and Ertl 2002)"}}};
 
 constexpr std::array<Name<SlicingKind>, 5> kSlicingKinds{
     {{SlicingKind::kObject2d, "object-2d", "the 2D textures of the stack most across the view, one by one"},

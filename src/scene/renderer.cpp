@@ -120,7 +120,8 @@ void require_clip_volumes(const Clipping& clipping, const std::vector<const Prep
 void require_source(const RenderSettings& settings, const std::vector<Source>& sources) {
   if (settings.lighting.shadows == ShadowKind::kHalfAngle && settings.source != Source::kSlices)
     throw Error(ErrorCode::kUnsupported,
-                "shadows 'half-angle' are for grids by the source 'slices' of --backend gl: choose both, or 'volume' "
+                "shadows 'half-angle' are for grids by the source 'slices' of --backend gl: choose --source slices, or "
+                "'volume' "
                 "or 'exact'");
   if (!settings.source || std::ranges::find(sources, *settings.source) != sources.end()) return;
   const bool is_grid = sources.front() == Source::kMarch;

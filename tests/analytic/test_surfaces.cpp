@@ -10,9 +10,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -247,9 +249,12 @@ TEST(SurfacesInMeshes, RaysThatMeetNoneAreAsWithout) {
   const tests::Body body = make_cube(false, 12, norm);
   const OpticalFunction function{
       {{0.0, 1.5, {0.9, 0.6, 0.3}}, {0.8, 0.2, {0.2, 0.6, 0.9}}, {1.8, 1.1, {0.9, 0.9, 0.1}}}};
+  const std::vector<std::string> sets = instruction_sets();
+  std::size_t next_set = 0;
   for (const Integrator integrator : tests::kAllIntegrators) {
     RenderSettings settings = tests::make_settings(integrator, 101, 83);
     for (const auto& [name, camera] : standard_cameras()) {
+      settings.instruction_set = sets[next_set++ % sets.size()];
       settings.surfaces.clear();
       const Image without = body.draw(function, camera, settings);
       settings.surfaces = {{kRadius, {0.9, 0.2, 0.1}, {0.1, 0.3, 0.8}, 0.5, true}};

@@ -81,13 +81,32 @@ TEST_F(Backends, WhatOpenGlAloneHasNeedsNoOption) {
     first.insert(first.end(), options.begin(), options.end());
     const Result drawn = run(first);
     ASSERT_EQ(drawn.code, 0) << drawn.err;
+    EXPECT_EQ(drawn.err, "");
     // A picture carries its scene, whatever has drawn it.
     const Result again = run({"render", "first.png", "-o", "again.png", "--statistics", "again.json"});
     ASSERT_EQ(again.code, 0) << again.err;
     EXPECT_EQ(nlohmann::json::parse(read("again.json")).at("backend"), "gl");
     EXPECT_EQ(read("again.png"), read("first.png")) << options[2];
   }
-  expect_error(run({"render", "builtin:sphere", "--backend", "cpu", "--source", "project"}), 1, {"--backend gl"});
+  // Options are of the backend that draws.
+  const std::vector<std::string> sliced{"render",       "first.png", "--source", "project",
+                                        "--resolution", "20,20",     "-o",       "more.png"};
+  const auto warned = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), sliced.begin(), sliced.end());
+    const Result result = run(more);
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.err.find("changes nothing") != std::string::npos;
+  };
+  EXPECT_FALSE(warned({"--gl-device", "0"}));
+  EXPECT_TRUE(warned({"--instruction-set", "SCALAR"}));
+}
+
+TEST_F(Backends, ConstantCellsNeedNoTablesAndStayWithTheCpu) {
+  const Result drawn = run({"render", "builtin:hydrogen", "--filter", "nearest", "--integrator", "table3d",
+                            "--preintegration-device", "gpu", "--clip-plane", "0,0,0,1,0,0", "--resolution", "20,20",
+                            "--statistics", "drawn.json", "-o", "drawn.png"});
+  ASSERT_EQ(drawn.code, 0) << drawn.err;
+  EXPECT_EQ(nlohmann::json::parse(read("drawn.json")).at("backend"), "cpu");
 }
 
 TEST_F(Backends, OptionsOfOpenGlSayThatTheyChangeNothingElsewhere) {

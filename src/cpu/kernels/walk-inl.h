@@ -82,8 +82,10 @@ class Walker : WalkLanes {
   void march() {
     constexpr std::size_t kIdle = std::max<std::size_t>(1, kLanes / 4);
     RayState s = load();
-    if constexpr (kHasEffects)
+    if constexpr (kHasEffects) {
+      note_face(s, entered_);
       if (is_followed()) light_.set_out(effects(), view_rays().direction());
+    }
     const std::size_t wanted = hn::CountTrue(kFloat, s.alive);
     const std::size_t enough = next_ray_ < job_.tile->rays.size() ? (wanted > kIdle ? wanted - kIdle : 0) : 0;
     for (;;) {
@@ -132,9 +134,8 @@ class Walker : WalkLanes {
     rank = hn::Add(rank, hn::IfThenElseZero(hn::Lt(d, replaced), hn::Set(kUint, 1)));
     const Uint neighbour = hn::GatherIndex(kUint, links, hn::BitCast(kInt, hn::Add(five_cells, rank)));
 
-    PassedFace& entered = entered_;
     if constexpr (kHasEffects)
-      if (integrator_.wants_faces()) note_face(s, entered);
+      if (integrator_.wants_faces()) note_face(s, entered_);
     replace_vertex(s, out_a, out_b, out_c, d, x, y, vertex, product);
 
     // Depth and scalar where the ray leaves.
@@ -164,7 +165,7 @@ class Walker : WalkLanes {
     const bool is_cut = !hn::AllFalse(kFloat, clipped);
     if constexpr (kHasEffects) {
       const auto stretch_of = [&] {
-        return make_stretch(s, entered, d, {out_a, out_b, out_c}, hn::IfThenElseZero(valid, inverse), segment, z_back);
+        return make_stretch(s, entered_, d, {out_a, out_b, out_c}, hn::IfThenElseZero(valid, inverse), segment, z_back);
       };
       const auto integrate = [&](Float from, Float to, Float length_part) {
         TetrahedronStretch part = stretch_of();
@@ -172,7 +173,7 @@ class Walker : WalkLanes {
         integrate_part(s, part, from, to);
       };
       if (is_followed())  // then nothing is cut or met
-        integrate_followed(s, entered, d, {out_a, out_b, out_c}, segment, stretch_of);
+        integrate_followed(s, entered_, d, {out_a, out_b, out_c}, segment, stretch_of);
       else if (HWY_UNLIKELY(is_cut))
         integrate_intervals(s, z_back, segment, integrate);
       else if (HWY_LIKELY(integrator_.is_light_all(segment)))
