@@ -216,7 +216,9 @@ bool draws_by_gl(const MethodOptions& method, const RenderSettings& settings, st
   using enum Integrator;
   const Integrator integrator = settings.integrator;
   const bool is_by_table = integrator == kTable3d || integrator == kPolynomial || integrator == kCylindrical;
-  const bool is_constant = association == Association::kCell || settings.filter.kind == FilterKind::kNearest;
+  const FilterKind filter = settings.filter.kind;
+  const bool is_constant =
+      filter == FilterKind::kNearest || (association == Association::kCell && filter == FilterKind::kLinear);
   if (is_by_table && !is_constant && settings.preintegration.device == TableDevice::kGpu) return true;
   return settings.source == kProject || settings.source == kVicp || settings.source == kSlices;
 }

@@ -121,8 +121,7 @@ void require_source(const RenderSettings& settings, const std::vector<Source>& s
   if (settings.lighting.shadows == ShadowKind::kHalfAngle && settings.source != Source::kSlices)
     throw Error(ErrorCode::kUnsupported,
                 "shadows 'half-angle' are for grids by the source 'slices' of --backend gl: choose --source slices, or "
-                "'volume' "
-                "or 'exact'");
+                "'volume' or 'exact'");
   if (!settings.source || std::ranges::find(sources, *settings.source) != sources.end()) return;
   const bool is_grid = sources.front() == Source::kMarch;
   const Source asked = *settings.source;

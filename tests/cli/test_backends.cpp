@@ -89,10 +89,10 @@ TEST_F(Backends, WhatOpenGlAloneHasNeedsNoOption) {
     EXPECT_EQ(read("again.png"), read("first.png")) << options[2];
   }
   // Options are of the backend that draws.
-  const std::vector<std::string> sliced{"render",       "first.png", "--source", "project",
-                                        "--resolution", "20,20",     "-o",       "more.png"};
+  const std::vector<std::string> projected{"render",       "first.png", "--source", "project",
+                                           "--resolution", "20,20",     "-o",       "more.png"};
   const auto warned = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), sliced.begin(), sliced.end());
+    more.insert(more.begin(), projected.begin(), projected.end());
     const Result result = run(more);
     EXPECT_EQ(result.code, 0) << result.err;
     return result.err.find("changes nothing") != std::string::npos;
