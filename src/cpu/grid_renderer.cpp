@@ -4,9 +4,11 @@
 #include "src/cpu/grid_domain.h"
 #include "src/cpu/grid_frame.h"
 #include "src/cpu/grid_marches.h"
+#include "src/cpu/grid_packets.h"
 #include "src/cpu/grid_shadows.h"
 #include "src/cpu/illustration.h"
 #include "src/cpu/planned_brick.h"
+#include "src/cpu/tile_intervals.h"
 #include "src/grid/summaries.h"
 #include "src/optics/antiderivative_table.h"
 #include "src/optics/extinction_integral.h"
@@ -26,65 +28,13 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace tetravox::cpu {
 namespace {
-
-/// The parts of a tile's rays that the clipping keeps.
-class TileIntervals {
- public:
-  /// Finds them, and puts each ray at the first.
-  void find(const ClipScene& clip, const scene::RayGrid& grid, int column, int row, MarchRays& rays) {
-    intervals_.clear();
-    next_.assign(MarchRays::kCount, 0);
-    end_.assign(MarchRays::kCount, 0);
-    for (int y = 0; y < std::min(kTileSize, grid.height - row); ++y)
-      for (int x = 0; x < std::min(kTileSize, grid.width - column); ++x) {
-        const auto ray = static_cast<std::size_t>(y * kTileSize + x);
-        next_[ray] = intervals_.size();
-        find_intervals(clip,
-                       {grid.column_offset[column + x], grid.column_slope[column + x], grid.row_offset[row + y],
-                        grid.row_slope[row + y], grid.z_near, std::numeric_limits<double>::infinity()},
-                       scratch_, intervals_);
-        end_[ray] = intervals_.size();
-        rays.has_intervals |= end_[ray] > next_[ray] + 1;
-        if (!advance(ray, rays)) rays.z_far[ray] = kNothing;
-      }
-  }
-
-  /// What has been drawn of the rays that met a brick is not drawn again.
-  static void note_drawn(MarchRays& rays, int count) {
-    for (int i = 0; i < count; ++i) rays.z_near[rays.met.ray[i]] = rays.met.z_leave[i];
-  }
-
-  /// Moves the rays that have left their interval in the brick at hand to the next one; whether there are any.
-  bool advance_ended(MarchRays& rays) {
-    bool is_any_moved = false;
-    for (int i = 0; i < rays.ended_count; ++i) {
-      const auto ray = static_cast<std::size_t>(rays.ended[i]);
-      is_any_moved |= rays.z_far[ray] >= rays.z_near[ray] && advance(ray, rays);
-    }
-    return is_any_moved;
-  }
-
- private:
-  static constexpr float kNothing = -std::numeric_limits<float>::max();  // a ray that ends before it begins
-
-  bool advance(std::size_t ray, MarchRays& rays) {
-    if (next_[ray] == end_[ray]) return false;
-    const ClipInterval& interval = intervals_[next_[ray]++];
-    rays.z_near[ray] = interval.z_near;
-    rays.z_far[ray] = interval.z_far;
-    return true;
-  }
-
-  ClipScratch scratch_;
-  std::vector<ClipInterval> intervals_;
-  std::vector<std::size_t> next_, end_;  // of each ray
-};
 
 /// What one thread works with.
 struct Workspace {
@@ -103,6 +53,7 @@ struct FrameParts {
   Marches marches;
   const Kernels* kernels = nullptr;
   MarchJob job;
+  std::optional<GridPackets> packets;  // where rays need no bricks
   bool has_clipping = false;
   ClipScene clip;
   Illustration illustration;
@@ -134,6 +85,7 @@ class GridRenderer final : public scene::FrameRenderer {
                                   scalar_map().stored_from_value(range.max), steepness_);
     has_centroids_ = false;
     preintegration_.invalidate();
+    slabs_.invalidate();
     function_ = function;
     domain_.clear();
     is_planned_ = false;
@@ -164,7 +116,8 @@ class GridRenderer final : public scene::FrameRenderer {
     return antiderivative_.bytes() + control_points_.bytes() + extinction_.bytes() +
            (plans_.size() + group_plans_.size()) * sizeof(scene::BrickPlan) +
            (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_ +
-           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() + preintegration_.bytes();
+           centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() +
+           preintegration_.bytes() + slabs_.bytes();
   }
 
   std::vector<Source> sources() const override { return {Source::kMarch}; }
@@ -192,9 +145,13 @@ class GridRenderer final : public scene::FrameRenderer {
   scene::PlanSources plan_sources(const RenderSettings& settings) const;
   scene::PlanSettings plan_settings(const RenderSettings& settings) const;
   void plan(const RenderSettings& settings);
+  std::optional<GridPackets> make_packets(const RenderSettings& settings, const Kernels& kernels, const MarchJob& job);
   MarchJob make_job(const RenderSettings& settings, const IntegratorTables& tables) const;
   std::uint64_t draw_brick(const FrameParts& frame, const TilePlace& place, const BinnedBrick& binned,
                            Workspace& workspace) const;
+  std::uint64_t draw_packets(const FrameParts& frame, Workspace& workspace) const;
+  std::uint64_t draw_bricks(const FrameParts& frame, const TilePlace& place, std::span<const BinnedBrick> bricks,
+                            Workspace& workspace) const;
   TileCounts draw_tile(const FrameParts& frame, std::size_t tile, Workspace& workspace, Image& image) const;
 
   const PreparedGrid& grid_;
@@ -212,6 +169,7 @@ class GridRenderer final : public scene::FrameRenderer {
   std::uint64_t function_number_ = 0;
   ShadowCache shadows_;
   scene::PreintegrationCache preintegration_;
+  SlabCache slabs_;
   bool is_planned_ = false;
   scene::PlanSettings planned_for_;
   scene::BrickGroups groups_;
@@ -363,6 +321,19 @@ MarchJob GridRenderer::make_job(const RenderSettings& settings, const Integrator
   return job;
 }
 
+/// At a fixed rate, where the values serve as they lie: rays in packets instead of bricks.
+std::optional<GridPackets> GridRenderer::make_packets(const RenderSettings& settings, const Kernels& kernels,
+                                                      const MarchJob& job) {
+  if (settings.samples_per_voxel == 0.0 || !scene::counts_steps(grid_, settings.filter, settings.integrator)) return {};
+  if (settings.integrator == Integrator::kPartial) return GridPackets(grid_, plans_, kernels.packets_partial, job);
+  GridPackets packets(grid_, plans_, kernels.packets_antiderivative, job);
+  const float steepness = steepness_.largest_steepness(scalar_map().stored_from_value(grid_.scalar_range.min),
+                                                       scalar_map().stored_from_value(grid_.scalar_range.max));
+  if (SlabCache::may_round(grid_, steepness, diagonal(), settings.tolerance))
+    packets.use_slabs(slabs_.prepare(grid_, *job.tables, kernels, job.sample_distance), kernels.packets_slabs);
+  return packets;
+}
+
 /// Reads the values of a brick, and what the function asks for beside them.
 void GridRenderer::fill_lattices(const FrameParts& frame, std::uint32_t index, Workspace& workspace,
                                  MarchBrick& brick) const {
@@ -403,6 +374,24 @@ std::uint64_t GridRenderer::draw_brick(const FrameParts& frame, const TilePlace&
   return segments;
 }
 
+std::uint64_t GridRenderer::draw_bricks(const FrameParts& frame, const TilePlace& place,
+                                        std::span<const BinnedBrick> bricks, Workspace& workspace) const {
+  std::uint64_t segments = 0;
+  for (std::size_t i = 0; i < bricks.size(); ++i) {
+    if (i + 1 < bricks.size()) BrickLattice::prefetch(frame.grid.field, drawn(), bricks[i + 1].brick);
+    segments += draw_brick(frame, place, bricks[i], workspace);
+  }
+  return segments;
+}
+
+/// One interval of all rays after the other.
+std::uint64_t GridRenderer::draw_packets(const FrameParts& frame, Workspace& workspace) const {
+  std::uint64_t segments = 0;
+  do segments += frame.packets->draw(*workspace.rays);
+  while (workspace.rays->has_intervals && workspace.intervals.advance_all(*workspace.rays));
+  return segments;
+}
+
 TileCounts GridRenderer::draw_tile(const FrameParts& frame, std::size_t tile, Workspace& workspace,
                                    Image& image) const {
   const std::span<const BinnedBrick> bricks = frame.bins.bricks_of(tile);
@@ -415,10 +404,8 @@ TileCounts GridRenderer::draw_tile(const FrameParts& frame, std::size_t tile, Wo
   for (int axis = 0; axis < 3; ++axis) start.upper[axis] = frame_.plane(axis, drawn().data.shape.dimensions[axis] - 1);
   frame.kernels->start_march(start);
   if (frame.has_clipping) workspace.intervals.find(frame.clip, frame.rays.grid, column, row, *workspace.rays);
-  for (std::size_t i = 0; i < bricks.size(); ++i) {
-    if (i + 1 < bricks.size()) BrickLattice::prefetch(frame.grid.field, drawn(), bricks[i + 1].brick);
-    counts.segments += draw_brick(frame, {column, row}, bricks[i], workspace);
-  }
+  counts.segments =
+      frame.packets ? draw_packets(frame, workspace) : draw_bricks(frame, {column, row}, bricks, workspace);
   const MarchRays& rays = *workspace.rays;
   for (int y = 0; y < std::min(kTileSize, image.height - row); ++y)
     for (int x = 0; x < std::min(kTileSize, image.width - column); ++x) {
@@ -507,6 +494,7 @@ void GridRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   frame.kernels = &kernels;
   frame.job = make_job(settings, tables);
   frame.job.grid = &frame.rays.grid;
+  if (!has_effects) frame.packets = make_packets(settings, kernels, frame.job);
   if (has_effects) describe(settings, context, frame);
   if (has_effects) trace(settings, context, frame);
   frame.illustration.effects.record = pass.record;
@@ -566,7 +554,8 @@ std::uint64_t estimate_render_memory(const GridData& grid, const RenderSettings&
         static_cast<std::uint64_t>(settings.threads > 0 ? settings.threads : support::hardware_threads());
     shadows = threads * std::min<std::uint64_t>(bricks * cpu::BrickStore::kBytesOfBrick, cpu::BrickStore::kMostBytes);
   }
-  return pixels * 4 * sizeof(float) + bricks * of_brick + coefficients + shadows + kTables +
+  const std::uint64_t slabs = settings.samples_per_voxel > 0.0 ? cpu::SlabCache::kBytes + bricks : 0;
+  return pixels * 4 * sizeof(float) + bricks * of_brick + coefficients + shadows + slabs + kTables +
          scene::preintegration_bytes(settings);
 }
 

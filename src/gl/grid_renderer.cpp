@@ -204,6 +204,8 @@ MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSetti
   block.bins_per_scalar = steepness_.bins_per_scalar;
   if (settings.samples_per_voxel > 0.0)
     block.sample_distance = static_cast<float>(grid::mean_spacing(frame_) / settings.samples_per_voxel);
+  block.counts_steps =
+      settings.samples_per_voxel > 0.0 && scene::counts_steps(grid_, settings.filter, settings.integrator);
   block.negligible = scene::negligible_transmittance(settings);
   return block;
 }

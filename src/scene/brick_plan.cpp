@@ -4,6 +4,7 @@
 #include "src/support/threads.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace tetravox::scene {
 namespace {
@@ -170,6 +171,24 @@ class Planner {
 bool restarts_rate(const PreparedGrid& grid, Integrator integrator) {
   const bool is_exact = integrator == Integrator::kAntiderivative || integrator == Integrator::kPartial;
   return is_exact && has_even_axes(grid) && grid.missing_values == 0;
+}
+
+bool counts_steps(const PreparedGrid& grid, const Filter& filter, Integrator integrator) {
+  constexpr auto kMostBytes = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+  const GridData& data = grid.data;
+  const bool is_in_place = data.association == Association::kPoint && data.components == 1 &&
+                           data.values.size() <= kMostBytes && grid.scalar_offset == 0.0 && grid.scalar_scale > 1e-30 &&
+                           grid.scalar_scale < 1e30;
+  switch (data.type) {
+    case ScalarType::kInt8:
+    case ScalarType::kUint8:
+    case ScalarType::kInt16:
+    case ScalarType::kUint16:
+    case ScalarType::kFloat32:
+      return is_in_place && filter.kind == FilterKind::kLinear && restarts_rate(grid, integrator);
+    default:
+      return false;
+  }
 }
 
 float allowed_rate_of(double tolerance, double diagonal) {

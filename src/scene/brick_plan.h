@@ -56,8 +56,13 @@ struct PlanSources {
 };
 
 /// Whether steps of a fixed rate may start anew in each brick, where it hardly matters where samples lie: exactly
-/// integrated ones on even axes, with nothing missing. Elsewhere samples are counted on from the eye.
+/// integrated ones on even axes, with nothing missing. Elsewhere samples are counted on from the eye, in every cell.
 bool restarts_rate(const PreparedGrid& grid, Integrator integrator);
+
+/// Whether such steps are counted on through the whole grid instead, in packets of rays that read values where they
+/// lie: points of one component, 8 or 16 bits or float, 2 GiB at most, stored as they are but for a factor, between
+/// which the field is linear.
+bool counts_steps(const PreparedGrid& grid, const Filter& filter, Integrator integrator);
 
 /// Error in colour for one unit of world length that segments may have.
 float allowed_rate_of(double tolerance, double diagonal);

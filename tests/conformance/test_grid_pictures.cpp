@@ -204,27 +204,5 @@ TEST(GridFunctions, MayHaveThousandsOfControlPoints) {
   }
 }
 
-TEST(GridRates, ConvergeToTheExactPicture) {
-  const GridSubject scene(make_hard_grids()[0].grid);
-  const reference::View view{scene.camera("outside"), 64, 48};
-  for (const char* function : {"smooth", "steps", "random"}) {
-    const Image expected = reference::draw(scene.grid.data, {}, scene.function(function), view);
-    for (const Integrator integrator : tests::kExactIntegrators) {
-      double before = 1.0;
-      for (const double rate : {1.0, 4.0, 16.0, 64.0}) {
-        RenderSettings settings = make_grid_settings(integrator, {}, 64, 48);
-        settings.samples_per_voxel = rate;
-        const tests::ImageDifference difference =
-            tests::compare_images(render(scene.grid, scene.function(function), view.camera, settings), expected);
-        std::printf("%s %s, %g samples a voxel: max %.2e RMS %.2e\n", function, name_of(integrator).c_str(), rate,
-                    difference.max, difference.rms);
-        EXPECT_LT(difference.rms, std::max(before / 4.0, 3e-4))
-            << function << " " << name_of(integrator) << " " << rate;
-        before = difference.rms;
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace tetravox::conformance

@@ -11,6 +11,7 @@
 #include "src/optics/cylindrical_atlas.h"
 #include "src/optics/polynomial_table.h"
 #include "src/optics/preintegration_table.h"
+#include "src/optics/slab_table.h"
 #include "src/optics/steepness_table.h"
 #include "src/optics/transparency_table.h"
 #include "src/scene/camera_frame.h"
@@ -57,6 +58,8 @@ struct IntegratorTables {
   const optics::PreintegrationTable* preintegration = nullptr;
   const optics::PolynomialTable* polynomial = nullptr;
   const optics::CylindricalAtlas* atlas = nullptr;
+  const optics::SlabTable* slabs = nullptr;  ///< of packets at a fixed rate
+  float slab_thickness = 1.0f;               ///< world length
 };
 
 /// Segments one by one; stored scalars, world lengths.
@@ -195,6 +198,40 @@ struct MarchStart {
   MarchRays* tile = nullptr;
 };
 
+/// Values of a whole grid where they lie: one scalar a value, [k][j][i], in this machine's byte order.
+struct MarchValues {
+  const std::byte* values = nullptr;
+  std::int32_t dimensions[3] = {2, 2, 2};  ///< at least 2 each
+  std::ptrdiff_t row_bytes = 1, slice_bytes = 1;
+  int value_bytes = 1;     ///< 1 and 2: integers without sign; 4: floats
+  std::uint32_t flip = 0;  ///< turned over in each pair of integers: sign bits, so that signed ones have none
+  /// scalar of the integrator = (value - offset) * inverse_scale
+  float offset = 0.0f, inverse_scale = 1.0f;
+};
+
+/// Takes the rays of a tile through a whole grid in equal steps.
+struct PacketJob {
+  MarchRays* rays = nullptr;
+  const MarchValues* values = nullptr;
+  const IntegratorTables* tables = nullptr;
+  /// [bricks] bit `span`: whether the brick is to be drawn, or one of those up to one further along the axes whose bits
+  /// are set in `span`.
+  const std::uint8_t* seen_spans = nullptr;
+  std::int32_t brick_counts[3] = {};
+  bool is_large = false;         ///< whether values will have to be asked for early
+  float sample_distance = 0.0f;  ///< world length
+  bool use_early_ray_termination = true;
+  float negligible = 0.0f;  ///< as in `MarchJob`
+};
+
+/// One row of a table of slabs.
+struct SlabJob {
+  const IntegratorTables* tables = nullptr;
+  optics::SlabTable* table = nullptr;  ///< with room for its entries
+  int front = 0;
+  float thickness = 1.0f;  ///< world length
+};
+
 /// The kernels of one instruction set. All are safe to call from many threads.
 struct Kernels {
   /// Appends to `hits` the pixels of `bounds` whose ray meets `face` from its outer side.
@@ -226,6 +263,11 @@ struct Kernels {
   std::uint64_t (*sample_partial)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*sample_post)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*sample_densities)(const MarchJob& job, int count) = nullptr;
+  /// The same where the values of the grid serve as they lie; returns how many segments there were.
+  std::uint64_t (*packets_antiderivative)(const PacketJob& job) = nullptr;
+  std::uint64_t (*packets_partial)(const PacketJob& job) = nullptr;
+  std::uint64_t (*packets_slabs)(const PacketJob& job) = nullptr;  ///< of `IntegratorTables::slabs`
+  void (*fill_slabs)(const SlabJob& job) = nullptr;
   std::uint64_t (*march_cells)(const MarchJob& job,
                                int count) = nullptr;           ///< constant cells, exact with every integrator
   WalkStatistics (*walk_cells)(const WalkJob& job) = nullptr;  ///< cell data, exact with every integrator

@@ -54,15 +54,31 @@ HWY_INLINE hn::Mask<UintTag> uint_mask(Mask mask) { return hn::RebindMask(kUint,
 HWY_INLINE hn::Mask<IntTag> int_mask(Mask mask) { return hn::RebindMask(kInt, mask); }
 
 #if HWY_TARGET != HWY_SCALAR
-/// The records of lanes i, i + 4, i + 8, ..., one in each 128-bit block.
-template <class Tag, class FindRecord>
-HWY_INLINE hn::Vec<Tag> load_blocks(Tag tag, const FindRecord& record, std::size_t i) {
+/// Four floats: a record.
+using Block = hn::Vec128<float>;
+
+/// `load(lane)` of lanes i, i + 4, i + 8, ..., one in each 128-bit block.
+template <class Tag, class LoadBlock>
+HWY_INLINE hn::Vec<Tag> load_blocks(Tag tag, const LoadBlock& load, std::size_t i) {
   if constexpr (hn::MaxLanes(Tag()) == 4) {
-    return hn::LoadU(tag, record(i));
+    return load(i);
   } else {
     const hn::Half<Tag> half;
-    return hn::Combine(tag, load_blocks(half, record, i + hn::MaxLanes(Tag()) / 2), load_blocks(half, record, i));
+    return hn::Combine(tag, load_blocks(half, load, i + hn::MaxLanes(Tag()) / 2), load_blocks(half, load, i));
   }
+}
+
+/// The records `load(lane)` of all lanes.
+template <class LoadBlock>
+HWY_INLINE Record transpose_blocks(const LoadBlock& load) {
+  Float row[4];
+  for (std::size_t i = 0; i < 4; ++i) row[i] = load_blocks(kFloat, load, i);
+  const Float xy_even = hn::InterleaveLower(kFloat, row[0], row[2]);
+  const Float xy_odd = hn::InterleaveLower(kFloat, row[1], row[3]);
+  const Float zw_even = hn::InterleaveUpper(kFloat, row[0], row[2]);
+  const Float zw_odd = hn::InterleaveUpper(kFloat, row[1], row[3]);
+  return {hn::InterleaveLower(kFloat, xy_even, xy_odd), hn::InterleaveUpper(kFloat, xy_even, xy_odd),
+          hn::InterleaveLower(kFloat, zw_even, zw_odd), hn::InterleaveUpper(kFloat, zw_even, zw_odd)};
 }
 #endif
 
@@ -73,14 +89,7 @@ HWY_INLINE Record transpose_records(const FindRecord& record) {
   const float* r = record(0);
   return {constant(r[0]), constant(r[1]), constant(r[2]), constant(r[3])};
 #else
-  Float row[4];
-  for (std::size_t i = 0; i < 4; ++i) row[i] = load_blocks(kFloat, record, i);
-  const Float xy_even = hn::InterleaveLower(kFloat, row[0], row[2]);
-  const Float xy_odd = hn::InterleaveLower(kFloat, row[1], row[3]);
-  const Float zw_even = hn::InterleaveUpper(kFloat, row[0], row[2]);
-  const Float zw_odd = hn::InterleaveUpper(kFloat, row[1], row[3]);
-  return {hn::InterleaveLower(kFloat, xy_even, xy_odd), hn::InterleaveUpper(kFloat, xy_even, xy_odd),
-          hn::InterleaveLower(kFloat, zw_even, zw_odd), hn::InterleaveUpper(kFloat, zw_even, zw_odd)};
+  return transpose_blocks([&](std::size_t i) { return hn::LoadU(hn::Full128<float>(), record(i)); });
 #endif
 }
 

@@ -133,8 +133,8 @@ void leave_brick(GridRay ray, inout BrickWalk walk) {
 struct Carried {
   vec4 value;    // of the sample before
   float depth;   // where it lies; before everything: there is none yet
-  float number;  // of the next one
-  float z_exit;  // where the ray leaves the grid
+  float number;  // of the next one; where steps are counted: of the last one
+  float z_enter, z_exit;  // where the ray is in the grid
 };
 Carried carried;
 
@@ -173,6 +173,11 @@ Lattice lattice_of(GridRay ray, ivec3 brick, uvec4 plan) {
   l.origin = (ray.origin - vec3(l.first)) * l.per_unit;
   l.direction = ray.direction * l.per_unit;
   return l;
+}
+
+// All cells of the grid.
+Lattice whole_lattice(GridRay ray) {
+  return Lattice(ivec3(0), cell_count(), 0, 1, 0, 1.0, ray.origin, ray.direction);
 }
 
 // Grid coordinate of the lattice's plane.

@@ -14,7 +14,7 @@ int is_first_pass;
 int plane_base_y;    // where the planes of the second axis begin, and of the third
 int plane_base_z;
 int most_work;       // pieces that a ray is taken through in a pass, about
-int unused_a;
+int counts_steps;    // at a fixed rate: whether steps are counted on through the whole grid
 float texel_offset;  // stored scalar = texel_offset + texel * texel_scale
 float texel_scale;
 float allowed_rate;  // error in colour for one unit of world length that a segment may have

@@ -34,13 +34,14 @@ void main() {
   vec2 depths = clip_grid(ray);
   vec4 sum = kNothingYet;
   bool has_met = false, is_waiting = false;
-  carried = Carried(vec4(0.0), -kNever, 0.0, depths.y);
+  carried = Carried(vec4(0.0), -kNever, -kNever, depths.x, depths.y);
   if (march.is_first_pass == 0) {
+    carried = Carried(pauses[place].sample_value, pauses[place].sample_depth, pauses[place].sample_number, depths.x,
+                      depths.y);
     depths.x = pauses[place].z;
     if (depths.x >= kNever) return;
     sum = pauses[place].sum;
     has_met = pauses[place].has_met != 0u;
-    carried = Carried(pauses[place].sample_value, pauses[place].sample_depth, pauses[place].sample_number, depths.y);
   }
   BrickWalk walk;
   walk.z = walk.z_exit = 0.0;

@@ -1,0 +1,59 @@
+#pragma once
+
+/// Grids at a fixed rate whose values serve as they lie in memory (scene::counts_steps): rays go through the whole grid
+/// in packets, without bricks.
+
+#include "src/cpu/kernels/kernels.h"
+#include "src/optics/slab_table.h"
+#include "src/scene/brick_plan.h"
+#include "tetravox/grid.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tetravox::cpu {
+
+/// Ray integrals of slabs as thick as two samples are apart. Made again when function, distance or tolerance change.
+class SlabCache {
+ public:
+  static constexpr std::size_t kBytes = sizeof(float[4]) * optics::SlabTable::kNodes * optics::SlabTable::kNodes;
+
+  /// Whether scalars may be rounded to nodes: `steepness` is the largest change of density with the stored scalar,
+  /// `longest` the world length of the longest ray.
+  static bool may_round(const PreparedGrid& grid, float steepness, double longest, double tolerance);
+
+  /// `tables`: those of the frame, of which the integrals are taken.
+  const optics::SlabTable& prepare(const PreparedGrid& grid, const IntegratorTables& tables, const Kernels& kernels,
+                                   float thickness);
+  void invalidate() { thickness_ = 0.0f; }
+  std::size_t bytes() const { return table_.bytes(); }
+
+ private:
+  optics::SlabTable table_;
+  float thickness_ = 0.0f, tolerance_ = 0.0f;
+};
+
+/// What the packets of all tiles share.
+class GridPackets {
+ public:
+  using March = std::uint64_t (*)(const PacketJob& job);
+
+  /// `march`: the kernel that integrates segments one by one. `job`: what the rays of the frame would do in bricks.
+  GridPackets(const PreparedGrid& grid, std::span<const scene::BrickPlan> plans, March march, const MarchJob& job);
+
+  /// Looks slabs up instead, by the kernel `march`.
+  void use_slabs(const optics::SlabTable& slabs, March march);
+
+  /// Draws the rays of a tile; returns how many segments they had.
+  std::uint64_t draw(MarchRays& rays) const;
+
+ private:
+  March march_;
+  MarchValues values_;
+  IntegratorTables tables_;
+  std::vector<std::uint8_t> seen_spans_;  // [bricks], see `PacketJob`
+  PacketJob job_;
+};
+
+}  // namespace tetravox::cpu

@@ -1,0 +1,97 @@
+// Slabs of one thickness: a table of two scalars, and how it is made.
+
+#if defined(TETRAVOX_CPU_SLAB_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETRAVOX_CPU_SLAB_INL
+#undef TETRAVOX_CPU_SLAB_INL
+#else
+#define TETRAVOX_CPU_SLAB_INL
+#endif
+
+#include "src/cpu/kernels/antiderivative-inl.h"
+#include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/segments-inl.h"
+#include "src/cpu/kernels/vector_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetravox::cpu {
+namespace HWY_NAMESPACE {
+
+/// The stored scalar at a node.
+HWY_INLINE Float scalar_at(const optics::SlabTable& table, Float node) {
+  return multiply_add(node, constant(1.0f / table.nodes_per_scalar), constant(table.first));
+}
+
+/// Fills the entries of slabs that have node `front` in front.
+inline void fill_slabs(const SlabJob& job) {
+  constexpr int kNodes = optics::SlabTable::kNodes;
+  const AntiderivativeIntegrator integrator(*job.tables);
+  const Float front = scalar_at(*job.table, constant(static_cast<float>(job.front)));
+  float* row = job.table->entries[static_cast<std::size_t>(job.front) * kNodes].data();
+  for (int back = 0; back < kNodes; back += static_cast<int>(kLanes)) {
+    Accumulated sum{constant(0.0f), constant(0.0f), constant(0.0f), constant(1.0f)};
+    auto at = integrator.front_at(front);
+    const Float number = hn::Add(hn::Iota(kFloat, 0.0f), constant(static_cast<float>(back)));
+    integrator.integrate({front, scalar_at(*job.table, number), constant(job.thickness)}, at, sum);
+    const Float alpha = hn::Sub(constant(1.0f), sum.transmittance);
+    hn::StoreInterleaved4(sum.red, sum.green, sum.blue, alpha, kFloat, row + 4 * back);
+  }
+}
+
+/// Looks slabs up. Scalars are in nodes of the table. What is thinner than a slab, at the ends of a ray, is integrated.
+class SlabIntegrator {
+ public:
+  /// Where the row of the node in front begins.
+  struct Front {
+    Int row;
+  };
+
+  explicit SlabIntegrator(const IntegratorTables& tables)
+      : table_(*tables.slabs),
+        entries_(table_.entries.data()),
+        thin_(constant(kWhole * tables.slab_thickness)),
+        precise_(tables) {}
+
+  HWY_INLINE Front front_at(Float node) const { return {row_of(round_small(node))}; }
+
+  HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
+    const Int node = round_small(segment.scalar_back);
+    const Record slab = load_table_records(entries_, hn::BitCast(kUint, hn::Add(front.row, node)));
+    const Mask is_any = hn::Gt(segment.length, constant(0.0f));
+    Float visible = hn::IfThenElseZero(is_any, sum.transmittance);
+    const Mask is_thin = hn::And(is_any, hn::Lt(segment.length, thin_));
+    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, is_thin))) {
+      visible = hn::IfThenZeroElse(is_thin, visible);
+      integrate_thin(segment, is_thin, sum);
+    }
+    sum.red = multiply_add(visible, slab.x, sum.red);
+    sum.green = multiply_add(visible, slab.y, sum.green);
+    sum.blue = multiply_add(visible, slab.z, sum.blue);
+    sum.transmittance = hn::Sub(sum.transmittance, hn::Mul(visible, slab.w));
+    front = {row_of(node)};
+  }
+
+ private:
+  /// A thousandth less than a slab is whole: lengths are rounded.
+  static constexpr float kWhole = 0.999f;
+
+  static_assert(optics::SlabTable::kNodes == 512);
+  static HWY_INLINE Int row_of(Int node) { return hn::ShiftLeft<9>(node); }
+
+  HWY_NOINLINE void integrate_thin(const Segments& segment, Mask is_thin, Accumulated& sum) const {
+    const Float scalar_front = scalar_at(table_, segment.scalar_front);
+    auto front = precise_.front_at(scalar_front);
+    const Float scalar_back = scalar_at(table_, segment.scalar_back);
+    precise_.integrate({scalar_front, scalar_back, hn::IfThenElseZero(is_thin, segment.length)}, front, sum);
+  }
+
+  const optics::SlabTable& table_;
+  const void* entries_;
+  Float thin_;
+  AntiderivativeIntegrator precise_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetravox::cpu
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,182 @@
+/// Grids at a fixed rate: against the exact picture, and against each other.
+
+#include "src/scene/brick_plan.h"
+#include "tests/common/image_compare.h"
+#include "tests/conformance/grid_scenes.h"
+#include "tests/reference/grid_integrator.h"
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace tetravox::conformance {
+namespace {
+
+TEST(GridRates, ConvergeToTheExactPicture) {
+  const GridSubject scene(make_hard_grids()[0].grid);
+  const reference::View view{scene.camera("outside"), 64, 48};
+  for (const char* function : {"smooth", "steps", "random"}) {
+    const Image expected = reference::draw(scene.grid.data, {}, scene.function(function), view);
+    for (const Integrator integrator : tests::kExactIntegrators) {
+      double before = 1.0;
+      for (const double rate : {1.0, 4.0, 16.0, 64.0}) {
+        RenderSettings settings = tests::make_settings(integrator, 64, 48);
+        settings.samples_per_voxel = rate;
+        const tests::ImageDifference difference =
+            tests::compare_images(render(scene.grid, scene.function(function), view.camera, settings), expected);
+        std::printf("%s %s, %g samples a voxel: max %.2e RMS %.2e\n", function, name_of(integrator).c_str(), rate,
+                    difference.max, difference.rms);
+        EXPECT_LT(difference.rms, std::max(before / 4.0, 3e-4))
+            << function << " " << name_of(integrator) << " " << rate;
+        before = difference.rms;
+      }
+    }
+  }
+}
+
+/// Number types whose values rays read where they lie.
+constexpr ScalarType kInPlace[] = {ScalarType::kInt8, ScalarType::kUint8, ScalarType::kInt16, ScalarType::kUint16,
+                                   ScalarType::kFloat32};
+
+/// The same whole numbers from 0 to 100 in any type, over several bricks that are not whole.
+GridData make_numbers(ScalarType type) {
+  tests::GridOptions options;
+  options.dimensions = {23, 19, 17};
+  options.type = type;
+  const tests::Field field = tests::make_random_field(21, 3.0);
+  return make_grid(options, [&](const Vector3& p) { return std::round(100.0 * field(p)); });
+}
+
+RenderSettings at_rate(double rate, Integrator integrator, double tolerance = 2e-3) {
+  RenderSettings settings = tests::make_settings(integrator, 64, 48);
+  settings.samples_per_voxel = rate;
+  settings.tolerance = tolerance;
+  return settings;
+}
+
+TEST(GridRates, NumberTypesAreReadWhereTheyLie) {
+  const GridSubject doubles(make_numbers(ScalarType::kFloat64));
+  EXPECT_FALSE(scene::counts_steps(doubles.grid, {}, Integrator::kAntiderivative));
+  for (const ScalarType type : kInPlace) {
+    const GridSubject scene(make_numbers(type));
+    EXPECT_TRUE(scene::counts_steps(scene.grid, {}, Integrator::kAntiderivative));
+    for (const auto& [name, camera] : doubles.cameras)
+      for (const Integrator integrator : tests::kExactIntegrators) {
+        const RenderSettings settings = at_rate(24.0, integrator);
+        const OpticalFunction& function = doubles.function("smooth");
+        EXPECT_TRUE(tests::images_agree(render(scene.grid, function, camera, settings),
+                                        render(doubles.grid, function, camera, settings), 1e-3, 1e-4))
+            << static_cast<int>(type) << " " << name << " " << name_of(integrator);
+      }
+  }
+}
+
+/// Negative numbers, and those at both ends of their type.
+TEST(GridRates, NumbersKeepTheirSign) {
+  for (const ScalarType type : {ScalarType::kInt8, ScalarType::kInt16, ScalarType::kUint8, ScalarType::kUint16}) {
+    const bool is_byte = scalar_type_size(type) == 1;
+    const bool is_signed = type == ScalarType::kInt8 || type == ScalarType::kInt16;
+    const double span = is_byte ? 255.0 : 65535.0, first = is_signed ? -(span + 1.0) / 2.0 : 0.0;
+    tests::GridOptions options;
+    options.dimensions = {12, 11, 10};
+    options.type = type;
+    const tests::Field field = [&](const Vector3& p) { return first + span * (0.5 + 0.5 * p[0]); };
+    const GridSubject scene(make_grid(options, field));
+    ASSERT_EQ(scene.grid.scalar_range.min, first);
+    ASSERT_EQ(scene.grid.scalar_range.max, first + span);
+    const reference::View view{scene.camera("outside"), 64, 48};
+    const OpticalFunction& function = scene.function("smooth");
+    EXPECT_TRUE(
+        tests::images_agree(render(scene.grid, function, view.camera, at_rate(16.0, Integrator::kAntiderivative)),
+                            reference::draw(scene.grid.data, {}, function, view), 4e-3, 3e-4))
+        << static_cast<int>(type);
+  }
+}
+
+/// Of what cannot be read in place, steps start anew in each brick or are counted in cells.
+TEST(GridRates, OtherGridsGoFromBrickToBrick) {
+  for (const auto& [grid_name, data] : make_hard_grids()) {
+    const std::string name = grid_name;
+    const PreparedGrid grid = prepare_grid(data);
+    const bool is_in_place = name != "uneven" && name != "cell_data" && name != "holes";
+    EXPECT_EQ(scene::counts_steps(grid, {}, Integrator::kPartial), is_in_place) << name;
+    EXPECT_FALSE(scene::counts_steps(grid, {}, Integrator::kPost)) << name;
+    EXPECT_FALSE(scene::counts_steps(grid, {FilterKind::kBspline}, Integrator::kPartial)) << name;
+  }
+  const tests::Field field = tests::make_random_field(5, 2.0);
+  const PreparedGrid vectors = prepare_grid(tests::make_vector_grid({}, {field, field}, 1));
+  EXPECT_FALSE(scene::counts_steps(vectors, {}, Integrator::kPartial));
+}
+
+/// Segments of the same ends, looked up with these rounded or integrated exactly.
+TEST(GridRates, SlabsErrNoMoreThanTheTolerance) {
+  for (const auto& [name, data] : make_hard_grids()) {
+    const GridSubject scene(data);
+    if (!scene::counts_steps(scene.grid, {}, Integrator::kPartial)) continue;
+    for (const auto& [function_name, function] : scene.functions)
+      for (const auto& [camera_name, camera] : scene.cameras)
+        for (const double tolerance : {0.1, 0.02})
+          for (const double rate : {0.8, 3.0}) {
+            const tests::ImageDifference difference = tests::compare_images(
+                render(scene.grid, function, camera, at_rate(rate, Integrator::kAntiderivative, tolerance)),
+                render(scene.grid, function, camera, at_rate(rate, Integrator::kPartial, tolerance)));
+            std::printf("%s %s %s, tolerance %g, rate %g: max %.2e RMS %.2e\n", name, function_name.c_str(),
+                        camera_name.c_str(), tolerance, rate, difference.max, difference.rms);
+            EXPECT_LE(difference.max, tolerance) << name << " " << function_name << " " << camera_name;
+            EXPECT_LE(difference.rms, tolerance / 10.0) << name << " " << function_name << " " << camera_name;
+          }
+  }
+}
+
+/// Rays that the clipping cuts into several parts.
+TEST(GridRates, ClippedRaysAreTakenUpAgain) {
+  const GridSubject scene(make_numbers(ScalarType::kUint8));
+  const std::vector<ClipShape> shapes{{ClipSphere{{0.1, 0.0, -0.1}, 0.6}, false},
+                                      {ClipBox{{{{-0.8, 0.9}, {-0.9, 0.8}, {-0.7, 0.9}}}}, true},
+                                      {ClipSphere{{-0.5, 0.5, 0.4}, 0.3}, false}};
+  for (std::size_t count = 1; count <= shapes.size(); ++count)
+    for (const auto& [name, camera] : scene.cameras) {
+      RenderSettings settings = at_rate(24.0, Integrator::kAntiderivative);
+      settings.clipping.shapes.assign(shapes.begin(), shapes.begin() + static_cast<std::ptrdiff_t>(count));
+      RenderSettings exact = settings;
+      exact.samples_per_voxel = 0.0;
+      exact.tolerance = 1e-4;
+      EXPECT_TRUE(tests::images_agree(render(scene.grid, scene.function("smooth"), camera, settings),
+                                      render(scene.grid, scene.function("smooth"), camera, exact), 3e-3, 3e-4))
+          << count << " shapes, " << name;
+    }
+}
+
+/// A new function, distance or tolerance asks for new slabs.
+TEST(GridRates, SlabsFollowTheSettings) {
+  const GridSubject scene(make_numbers(ScalarType::kUint8));
+  Renderer renderer(scene.grid);
+  const Camera& camera = scene.camera("outside");
+  for (const char* function : {"smooth", "thick", "smooth"}) {
+    renderer.set_transfer_function(scene.function(function));
+    for (const double rate : {0.8, 2.0, 0.8})
+      for (const double tolerance : {0.1, 0.5}) {
+        const RenderSettings settings = at_rate(rate, Integrator::kAntiderivative, tolerance);
+        EXPECT_TRUE(tests::images_equal(renderer.render(camera, settings),
+                                        render(scene.grid, scene.function(function), camera, settings)))
+            << function << " " << rate << " " << tolerance;
+      }
+  }
+}
+
+TEST(GridRates, StepsAreCounted) {
+  const GridSubject scene(make_numbers(ScalarType::kUint8));
+  Renderer renderer(scene.grid);
+  renderer.set_transfer_function(scene.function("smooth"));
+  RenderStatistics once, twice;
+  renderer.render(scene.camera("outside"), at_rate(2.0, Integrator::kAntiderivative, 0.1), &once);
+  renderer.render(scene.camera("outside"), at_rate(4.0, Integrator::kAntiderivative, 0.1), &twice);
+  EXPECT_EQ(once.rays, twice.rays);
+  EXPECT_GT(once.rays, 500u);
+  EXPECT_NEAR(static_cast<double>(twice.segments), 2.0 * static_cast<double>(once.segments),
+              2.0 * static_cast<double>(once.rays));
+}
+
+}  // namespace
+}  // namespace tetravox::conformance
