@@ -34,23 +34,26 @@ def prepare_scenes(tool, name, options):
 
 
 def compare(tool, display, scene, peer_scene, rounds):
-    """One row of the table: tetravox as exact as by default and fast, and the peers take turns."""
+    """One row of the table: tetravox as exact as by default, fast, and fast by OpenGL, and the peers take turns."""
     tool.render(scene, *RESOLUTION, *EXACT, output="exact.npy")
     exact = np.load(tool.path("exact.npy"))
     peers = {name: PeerRun(display, name, peer_scene, exact.shape[0]) for name in GRID_PEERS}
     repeat = ("--repeat", str(REPEATS))
-    own, fast = [], []
+    own, fast, by_opengl = [], [], []
     for _ in range(rounds):
         own.append(tool.render(scene, *RESOLUTION, *repeat))
         fast.append(tool.render(scene, *RESOLUTION, *repeat, *FAST, output="fast.npy"))
+        by_opengl.append(tool.render(scene, *RESOLUTION, *repeat, *FAST, "--backend", "gl", output="gl.npy"))
         for peer in peers.values():
             peer.frame()
     row = {
         "tetravox": summary(own, tool.path("picture.npy"), exact),
         "fast": summary(fast, tool.path("fast.npy"), exact),
+        "gl": summary(by_opengl, tool.path("gl.npy"), exact),
     }
     for name, peer in peers.items():
-        row[name] = peer.finish(tool.path("peer.npy"), exact, ratio=frame_seconds(own), fast_ratio=frame_seconds(fast))
+        row[name] = peer.finish(tool.path("peer.npy"), exact, ratio=frame_seconds(own), fast_ratio=frame_seconds(fast),
+                                gl_ratio=frame_seconds(by_opengl))
     return row
 
 

@@ -118,9 +118,9 @@ def scaling_table(rows):
 
 
 def grid_table(rows):
-    header = ["scene", "method", "frame", "tetravox is faster by", "fast is faster by",
+    header = ["scene", "method", "frame", "tetravox is faster by", "fast is faster by", "by OpenGL, fast",
               "largest error (RMS)", "read", "prepare / first frame", "peak memory"]
-    ratios = ("ratio", "fast_ratio")
+    ratios = ("ratio", "fast_ratio", "gl_ratio")
     lines = []
     for row in rows:
         name = row["workload"]
@@ -129,6 +129,7 @@ def grid_table(rows):
             continue
         lines.append(own_row([name, "**tetravox**"], row["tetravox"], ratios))
         lines.append(own_row([name, "**tetravox**, fast"], row["fast"], ratios))
+        lines.append(own_row([name, "**tetravox**, fast, OpenGL"], row["gl"], ratios))
         lines += [peer_row([name], peer, row[peer], ratios) for peer in GRID_PEERS]
     return table(header, lines)
 

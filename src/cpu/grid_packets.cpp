@@ -8,16 +8,6 @@ namespace {
 /// Fewer bytes will be found in a cache.
 constexpr std::size_t kCachedBytes = 8u << 20;
 
-/// Scalars on both sides of their nodes cancel out: a picture errs by a hundredth at most (measured) of what it would
-/// if all scalars of the longest ray were half a node off, to the same side, where the function is steepest.
-constexpr double kRoundingPerTolerance = 30.0;
-
-/// Stored scalars from node to node.
-float node_width(const PreparedGrid& grid) {
-  const double width = (grid.scalar_range.max - grid.scalar_range.min) / grid.scalar_scale;
-  return static_cast<float>(width / (optics::SlabTable::kNodes - 1));
-}
-
 MarchValues describe_values(const PreparedGrid& grid) {
   const GridData& data = grid.data;
   MarchValues values;
@@ -39,16 +29,12 @@ MarchValues describe_values(const PreparedGrid& grid) {
 
 }  // namespace
 
-bool SlabCache::may_round(const PreparedGrid& grid, float steepness, double longest, double tolerance) {
-  return 0.5 * node_width(grid) * steepness * longest <= kRoundingPerTolerance * tolerance;
-}
-
-const optics::SlabTable& SlabCache::prepare(const PreparedGrid& grid, const IntegratorTables& tables,
+const optics::SlabTable& SlabCache::prepare(const ValueRange& range, const IntegratorTables& tables,
                                             const Kernels& kernels, float thickness) {
   if (thickness == thickness_ && tables.tolerance == tolerance_) return table_;
   constexpr int kNodes = optics::SlabTable::kNodes;
-  const float width = node_width(grid);
-  table_.first = static_cast<float>((grid.scalar_range.min - grid.scalar_offset) / grid.scalar_scale);
+  const auto width = static_cast<float>((range.max - range.min) / (kNodes - 1));
+  table_.first = static_cast<float>(range.min);
   table_.nodes_per_scalar = width > 0.0f ? 1.0f / width : 1.0f;
   table_.entries.resize(static_cast<std::size_t>(kNodes) * kNodes);
   support::parallel_chunks(kNodes, 16, [&](std::size_t begin, std::size_t end) {
@@ -62,21 +48,11 @@ const optics::SlabTable& SlabCache::prepare(const PreparedGrid& grid, const Inte
 
 GridPackets::GridPackets(const PreparedGrid& grid, std::span<const scene::BrickPlan> plans, March march,
                          const MarchJob& job)
-    : march_(march), values_(describe_values(grid)), tables_(*job.tables), seen_spans_(plans.size()) {
-  for (std::size_t i = 0; i < plans.size(); ++i) seen_spans_[i] = plans[i].level != scene::BrickPlan::kTransparent;
-  // The spans without an axis, of a brick and of the next one along it, are those with it.
-  std::size_t stride = 1;
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    const std::size_t count = grid.bricks.counts[axis];
-    job_.brick_counts[axis] = static_cast<std::int32_t>(count);
-    for (std::size_t i = 0; i < plans.size(); ++i) {
-      const bool has_next = i / stride % count + 1 < count;
-      const unsigned without = seen_spans_[i], next = has_next ? seen_spans_[i + stride] : 0u;
-      const unsigned known = (1u << (1u << axis)) - 1u;
-      seen_spans_[i] = static_cast<std::uint8_t>(without | ((without | next) & known) << (1u << axis));
-    }
-    stride *= count;
-  }
+    : march_(march),
+      values_(describe_values(grid)),
+      tables_(*job.tables),
+      seen_spans_(scene::list_seen_spans(grid.bricks.counts, plans)) {
+  for (int axis = 0; axis < 3; ++axis) job_.brick_counts[axis] = static_cast<std::int32_t>(grid.bricks.counts[axis]);
   job_.is_large = grid.data.values.size() > kCachedBytes;
   job_.sample_distance = job.sample_distance;
   job_.use_early_ray_termination = job.use_early_ray_termination;

@@ -19,12 +19,8 @@ class SlabCache {
  public:
   static constexpr std::size_t kBytes = sizeof(float[4]) * optics::SlabTable::kNodes * optics::SlabTable::kNodes;
 
-  /// Whether scalars may be rounded to nodes: `steepness` is the largest change of density with the stored scalar,
-  /// `longest` the world length of the longest ray.
-  static bool may_round(const PreparedGrid& grid, float steepness, double longest, double tolerance);
-
-  /// `tables`: those of the frame, of which the integrals are taken.
-  const optics::SlabTable& prepare(const PreparedGrid& grid, const IntegratorTables& tables, const Kernels& kernels,
+  /// `range`: of the stored scalars. `tables`: those of the frame, of which the integrals are taken.
+  const optics::SlabTable& prepare(const ValueRange& range, const IntegratorTables& tables, const Kernels& kernels,
                                    float thickness);
   void invalidate() { thickness_ = 0.0f; }
   std::size_t bytes() const { return table_.bytes(); }

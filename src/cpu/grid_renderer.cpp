@@ -327,10 +327,12 @@ std::optional<GridPackets> GridRenderer::make_packets(const RenderSettings& sett
   if (settings.samples_per_voxel == 0.0 || !scene::counts_steps(grid_, settings.filter, settings.integrator)) return {};
   if (settings.integrator == Integrator::kPartial) return GridPackets(grid_, plans_, kernels.packets_partial, job);
   GridPackets packets(grid_, plans_, kernels.packets_antiderivative, job);
-  const float steepness = steepness_.largest_steepness(scalar_map().stored_from_value(grid_.scalar_range.min),
-                                                       scalar_map().stored_from_value(grid_.scalar_range.max));
-  if (SlabCache::may_round(grid_, steepness, diagonal(), settings.tolerance))
-    packets.use_slabs(slabs_.prepare(grid_, *job.tables, kernels, job.sample_distance), kernels.packets_slabs);
+  const ValueRange stored = scene::stored_range(grid_);
+  if (optics::rounding_error(
+          stored.max - stored.min,
+          steepness_.largest_steepness(static_cast<float>(stored.min), static_cast<float>(stored.max)),
+          diagonal()) <= settings.tolerance)
+    packets.use_slabs(slabs_.prepare(stored, *job.tables, kernels, job.sample_distance), kernels.packets_slabs);
   return packets;
 }
 

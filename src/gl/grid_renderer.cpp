@@ -4,9 +4,11 @@
 #include "src/gl/integrator_tables.h"
 #include "src/gl/march_bricks.h"
 #include "src/gl/march_passes.h"
+#include "src/gl/slabs.h"
 #include "src/gl/slice_block.h"
 #include "src/gl/slice_passes.h"
 #include "src/grid/frame.h"
+#include "src/optics/slab_table.h"
 #include "src/optics/steepness_table.h"
 #include "src/scene/brick_plan.h"
 #include "src/scene/filtered_field.h"
@@ -43,6 +45,7 @@ class GridRenderer final : public scene::FrameRenderer {
     device_->tables.set_transfer_function(function, {map, grid_.scalar_range, diagonal(), false});
     optics::build_steepness_table(device_->tables.control_points(), map.stored_from_value(grid_.scalar_range.min),
                                   map.stored_from_value(grid_.scalar_range.max), steepness_);
+    device_->slabs.invalidate();
     has_domain_ = is_planned_ = false;
   }
   void set_table(const OpticalTable&, const std::vector<std::size_t>&) override { has_domain_ = true; }
@@ -56,7 +59,7 @@ class GridRenderer final : public scene::FrameRenderer {
   std::uint64_t bytes() const override {
     const Device& device = *device_;
     return device.values.bytes() + device.frame.bytes() + device.tables.bytes() + device.bricks.bytes() +
-           device.nodes.bytes() + device.march.bytes() + device.slices.bytes() +
+           device.nodes.bytes() + device.slabs.bytes() + device.march.bytes() + device.slices.bytes() +
            plans_.size() * sizeof(scene::BrickPlan) + field_.coefficients.size() * sizeof(float);
   }
   std::vector<Source> sources() const override { return {Source::kMarch, Source::kSlices}; }
@@ -72,6 +75,7 @@ class GridRenderer final : public scene::FrameRenderer {
     MarchBricks bricks;
     FilteredNodes nodes;
     MarchPasses march;
+    Slabs slabs;
     SlicePasses slices;
   };
 
@@ -91,6 +95,14 @@ class GridRenderer final : public scene::FrameRenderer {
   bool wants_squares(const RenderSettings& settings) const {
     return context_->device().is_software && !scene::wants_kernel(settings.filter) && !is_constant(settings) &&
            settings.integrator != Integrator::kPre;
+  }
+  /// Whether segments of a fixed rate may be looked up with their scalars rounded.
+  bool wants_slabs(const RenderSettings& settings) const {
+    const ValueRange stored = scene::stored_range(grid_);
+    const float steepness =
+        steepness_.largest_steepness(static_cast<float>(stored.min), static_cast<float>(stored.max));
+    return settings.integrator == Integrator::kAntiderivative &&
+           optics::rounding_error(stored.max - stored.min, steepness, diagonal()) <= settings.tolerance;
   }
   void march(const scene::GridView& view, const RenderSettings& settings, const scene::FrameContext& context,
              RenderStatistics& statistics);
@@ -157,6 +169,7 @@ MarchKind GridRenderer::kind_of(const RenderSettings& settings) const {
       settings.samples_per_voxel > 0.0 && !kind.is_constant && !scene::restarts_rate(drawn(), settings.integrator);
   if (kind.is_constant) kind.integrator = Integrator::kAntiderivative;  // all are the same
   if (takes_points(kind) || kind.has_samples) return kind;
+  kind.has_runs = settings.samples_per_voxel > 0.0 && scene::counts_steps(grid_, settings.filter, settings.integrator);
   kind.has_strides = steps_.has_strides;
   kind.has_cells = steps_.has_cells || !steps_.has_strides;
   return kind;
@@ -204,8 +217,7 @@ MarchBlock GridRenderer::describe(const scene::GridView& view, const RenderSetti
   block.bins_per_scalar = steepness_.bins_per_scalar;
   if (settings.samples_per_voxel > 0.0)
     block.sample_distance = static_cast<float>(grid::mean_spacing(frame_) / settings.samples_per_voxel);
-  block.counts_steps =
-      settings.samples_per_voxel > 0.0 && scene::counts_steps(grid_, settings.filter, settings.integrator);
+  Slabs::describe(scene::stored_range(grid_), block);
   block.negligible = scene::negligible_transmittance(settings);
   return block;
 }
@@ -240,6 +252,11 @@ void GridRenderer::march(const scene::GridView& view, const RenderSettings& sett
   }
   MarchBlock block = describe(view, settings);
   block.most_work = pieces_a_pass(kind.shader);
+  if (kind.has_runs && wants_slabs(settings)) {
+    device.slabs.make(block, kind.shader, settings.tolerance);
+    device.slabs.bind();
+    kind.shader = slab_shader();
+  }
   MarchFrame frame{block, kind, device.frame, settings, context_->limits(), context.progress};
   const scene::PlanSources sources = plan_sources(settings);
   const FilteredBricks filtered = filtered_bricks(sources, settings);

@@ -38,13 +38,15 @@ RaySteps find_ray_steps(const scene::PlanSources& sources, const std::vector<sce
 void MarchBricks::upload(const scene::PlanSources& sources, const std::vector<scene::BrickPlan>& plans,
                          const grid::GridFrame& frame) {
   const BrickSummaries& bricks = sources.grid->bricks;
+  const std::vector<std::uint8_t> spans = scene::list_seen_spans(bricks.counts, plans);
   records_.resize(plans.size());
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const ValueRange range = scene::range_of(sources, i);
     const float steepness = plans[i].is_curved ? sources.steepness->largest_steepness(static_cast<float>(range.min),
                                                                                       static_cast<float>(range.max))
                                                : 0.0f;
-    records_[i] = {pack_plan(plans[i], bricks.has_missing[i] != 0), std::bit_cast<std::uint32_t>(steepness), 0, 1};
+    const std::uint32_t plan = pack_plan(plans[i], bricks.has_missing[i] != 0) | std::uint32_t{spans[i]} << 24;
+    records_[i] = {plan, std::bit_cast<std::uint32_t>(steepness), 0, 1};
   }
   plans_.upload(GL_RGBA32UI, records_.data(), records_.size() * sizeof(records_[0]));
   steepness_.upload(GL_R32F, sources.steepness->steepness.data(), sources.steepness->steepness.size() * sizeof(float));

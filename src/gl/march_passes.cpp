@@ -1,5 +1,6 @@
 #include "src/gl/march_passes.h"
 
+#include "src/gl/slabs.h"
 #include "src/support/threads.h"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ std::string marcher_file(const MarchKind& kind) {
 std::string key_of(const MarchKind& kind) {
   std::string key = name_of(kind.integrator) + " " + kind.shader.name;
   for (const bool flag : {kind.is_uneven, kind.is_constant, kind.is_nearest, kind.has_nodes, kind.has_squares,
-                          kind.has_samples, kind.has_strides, kind.has_cells})
+                          kind.has_samples, kind.has_runs, kind.has_strides, kind.has_cells})
     key += flag ? '1' : '0';
   return key;
 }
@@ -36,7 +37,7 @@ std::string key_of(const MarchKind& kind) {
 }  // namespace
 
 ShaderRecipe recipe_of_march(const MarchKind& kind) {
-  ShaderRecipe recipe{ShaderStage::kCompute, "march_grid.comp", {}, {}};
+  ShaderRecipe recipe{ShaderStage::kCompute, kind.has_runs ? "march_runs.comp" : "march_grid.comp", {}, {}};
   const auto define = [&](bool is_set, const char* name) {
     if (is_set) recipe.defines.emplace_back(name, "1");
   };
@@ -73,6 +74,9 @@ std::vector<MarchKind> march_kinds() {
       kind.has_cells = true;
       add(kind);
       if (kind.has_samples || kind.is_uneven) continue;
+      kind.has_runs = !kind.has_nodes;
+      if (kind.has_runs) add(kind);
+      kind.has_runs = false;
       kind.has_strides = true;
       add(kind);
       kind.has_cells = false;
@@ -102,6 +106,13 @@ std::vector<MarchKind> march_kinds() {
           add_each_way(kind);
         }
         kind.integrator = Integrator::kAntiderivative;
+        kind.shader = slab_shader();
+        kind.has_runs = true;
+        for (const bool has_squares : {false, true}) {
+          kind.has_squares = has_squares;
+          if (!is_uneven && !has_nodes && !has_samples) add(kind);
+        }
+        kind.has_runs = false;
         for (const IntegratorShader& shader : bounded_integrator_shaders()) {
           kind.shader = shader;
           if (!has_samples) add_each_way(kind);

@@ -29,6 +29,7 @@ struct MarchKind {
   bool has_nodes = false;    ///< lattices of filtered values instead of the grid's own
   bool has_squares = false;  ///< four values in each texel
   bool has_samples = false;  ///< a fixed rate, counted on from the eye
+  bool has_runs = false;     ///< a fixed rate, steps counted on through the whole grid (scene::counts_steps)
   // Of scalars that are no such samples:
   bool has_strides = false;  ///< bricks in which rays go in equal steps
   bool has_cells = true;     ///< bricks in which they go from cell to cell

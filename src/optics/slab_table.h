@@ -1,15 +1,17 @@
 #pragma once
 
+/// Ray integrals of slabs of one thickness.
+
 #include <array>
 #include <cstddef>
 #include <vector>
 
 namespace tetravox::optics {
 
-/// Ray integrals of slabs of one thickness, by the scalars in front and behind: premultiplied colour and opacity (the
-/// two-dimensional table of Engel, Kraus and Ertl 2001). Scalars are rounded to nodes.
+/// By the scalars in front and behind, rounded to nodes: premultiplied colour and opacity (the two-dimensional table of
+/// Engel, Kraus and Ertl 2001).
 struct SlabTable {
-  static constexpr int kNodes = 512;
+  static constexpr int kNodes = 512;  ///< over the range of the scalars
 
   float first = 0.0f;                         ///< stored scalar at node 0
   float nodes_per_scalar = 1.0f;              ///< node = (stored - first) * nodes_per_scalar
@@ -17,5 +19,13 @@ struct SlabTable {
 
   std::size_t bytes() const { return entries.size() * sizeof(entries[0]); }
 };
+
+/// What a picture errs by at most where scalars of a range of `width` are rounded to nodes: `steepness` is the largest
+/// change of density with the scalar, `longest` the world length of the longest ray. Scalars on both sides of their
+/// nodes cancel out: measured, it is a hundredth at most of what it would be if all of the longest ray were half a node
+/// off, to the same side, where the function is steepest. Three times that.
+inline double rounding_error(double width, double steepness, double longest) {
+  return 0.03 * 0.5 * width / (SlabTable::kNodes - 1) * steepness * longest;
+}
 
 }  // namespace tetravox::optics

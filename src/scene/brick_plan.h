@@ -8,6 +8,7 @@
 #include "tetravox/grid.h"
 #include "tetravox/render.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -73,6 +74,9 @@ float most_pieces_of(double tolerance);
 /// Extinction, per world length, that counts as none.
 float allowed_haze_of(double tolerance, double diagonal);
 
+/// Range of all stored scalars.
+ValueRange stored_range(const PreparedGrid& grid);
+
 /// Range of the field in a brick; min > max where it is missing throughout.
 ValueRange range_of(const PlanSources& sources, std::size_t brick);
 
@@ -84,6 +88,10 @@ std::vector<BrickPlan> plan_groups(const PlanSources& sources, const PlanSetting
 /// Microseconds for a thousand bricks, on all cores.
 std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSettings& settings,
                                    std::span<const BrickPlan> of_groups = {});
+
+/// [bricks] bit `span`: whether the brick is seen, or one of those up to one further along the axes whose bits are set
+/// in `span`.
+std::vector<std::uint8_t> list_seen_spans(const std::array<std::uint32_t, 3>& counts, std::span<const BrickPlan> plans);
 
 /// What is to be drawn, numbered as in brick_groups.h: groups that are single cells, and other bricks that are seen.
 std::vector<std::uint32_t> list_drawn(const PlanSources& sources, std::span<const BrickPlan> of_groups,

@@ -22,7 +22,7 @@ const float kParallel = 1e-6;  // a ray that moves less along an axis is paralle
 const float kNever = 1e30;
 const float kRounded = 4e-6;   // by what part of itself a depth may be off
 
-// Plans, see src/gl/march_bricks.h.
+// Plans, see src/gl/march_bricks.h. Their highest eight bits: spans that are seen.
 const uint kTransparent = 0xFFu, kIsCurved = 1u << 16, kIsGentle = 1u << 17, kHasMissing = 1u << 18;
 
 ivec3 cell_count() { return ivec3(march.cells_x, march.cells_y, march.cells_z); }
@@ -133,8 +133,8 @@ void leave_brick(GridRay ray, inout BrickWalk walk) {
 struct Carried {
   vec4 value;    // of the sample before
   float depth;   // where it lies; before everything: there is none yet
-  float number;  // of the next one; where steps are counted: of the last one
-  float z_enter, z_exit;  // where the ray is in the grid
+  float number;  // of the next one
+  float z_exit;  // where the ray leaves the grid
 };
 Carried carried;
 

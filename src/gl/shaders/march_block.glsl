@@ -14,7 +14,7 @@ int is_first_pass;
 int plane_base_y;    // where the planes of the second axis begin, and of the third
 int plane_base_z;
 int most_work;       // pieces that a ray is taken through in a pass, about
-int counts_steps;    // at a fixed rate: whether steps are counted on through the whole grid
+float slab_scale;    // place in the picture of slabs = slab_offset + stored scalar * slab_scale
 float texel_offset;  // stored scalar = texel_offset + texel * texel_scale
 float texel_scale;
 float allowed_rate;  // error in colour for one unit of world length that a segment may have
@@ -26,4 +26,4 @@ float negligible;       // transmittance below which a ray ends
 float texel_x;  // sides of a texel where that of a texture with as many as there are values is 1
 float texel_y;
 float texel_z;
-int unused_b;
+float slab_offset;

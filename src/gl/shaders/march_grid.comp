@@ -1,30 +1,9 @@
 // Takes each ray through the bricks of a grid front to back, some bricks a pass.
 
 #include "marcher.glsl"
+#include "march_pauses.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-
-layout(binding = 0, rgba32f) uniform writeonly image2D picture;
-
-layout(std430, binding = 0) buffer Counters {
-  uint unfinished_count;  // rays that need another pass
-  uint waiting_count;     // rays that have come to a brick whose values are not there yet
-  uint met_count;         // rays that met a brick which is seen
-  uint segments[64];      // spread, so that they are not fought for
-} counters;
-
-struct Pause {  // what a ray needs to go on in another pass
-  vec4 sum;
-  float z;      // kNever: it has arrived
-  uint has_met;
-  float sample_depth, sample_number;  // see `Carried`
-  vec4 sample_value;
-};
-layout(std430, binding = 1) buffer Pauses { Pause pauses[]; };  // [rows][width]
-
-bool is_over(vec4 sum) {
-  return frame.use_early_ray_termination != 0 && (sum.a < march.negligible || is_settled(sum));
-}
 
 void main() {
   ivec2 pixel = pixel_of(gl_WorkGroupID, gl_LocalInvocationIndex);
@@ -34,14 +13,13 @@ void main() {
   vec2 depths = clip_grid(ray);
   vec4 sum = kNothingYet;
   bool has_met = false, is_waiting = false;
-  carried = Carried(vec4(0.0), -kNever, -kNever, depths.x, depths.y);
+  carried = Carried(vec4(0.0), -kNever, 0.0, depths.y);
   if (march.is_first_pass == 0) {
-    carried = Carried(pauses[place].sample_value, pauses[place].sample_depth, pauses[place].sample_number, depths.x,
-                      depths.y);
     depths.x = pauses[place].z;
     if (depths.x >= kNever) return;
     sum = pauses[place].sum;
     has_met = pauses[place].has_met != 0u;
+    carried = Carried(pauses[place].sample_value, pauses[place].sample_depth, pauses[place].sample_number, depths.y);
   }
   BrickWalk walk;
   walk.z = walk.z_exit = 0.0;
@@ -79,13 +57,12 @@ void main() {
       is_done = has_left(walk) || is_over(sum);
     }
   }
-  if (segment_count > 0u) atomicAdd(counters.segments[place % 64u], segment_count);
-  pauses[place].z = is_done ? kNever : walk.z;
+  count_segments(place);
   if (is_done) {
-    if (has_met) atomicAdd(counters.met_count, 1u);
-    imageStore(picture, pixel, min(vec4(sum.rgb, 1.0 - sum.a), 1.0));
+    arrive(pixel, place, has_met, sum);
     return;
   }
+  pauses[place].z = walk.z;
   pauses[place].sum = sum;
   pauses[place].has_met = uint(has_met);
   pauses[place].sample_value = carried.value;

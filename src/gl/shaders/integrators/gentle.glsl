@@ -79,6 +79,7 @@ void begin(Segment segment, inout Front front) {
   front.position_back = position_of(segment.scalar_back);
   front.left = segment.world_length;
   front.share = 1.0;
+  front.is_pending = true;
 }
 
 bool is_pending(Front front) { return front.is_pending; }
