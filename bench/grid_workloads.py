@@ -39,21 +39,25 @@ def compare(tool, display, scene, peer_scene, rounds):
     exact = np.load(tool.path("exact.npy"))
     peers = {name: PeerRun(display, name, peer_scene, exact.shape[0]) for name in GRID_PEERS}
     repeat = ("--repeat", str(REPEATS))
-    own, fast, by_opengl = [], [], []
+    own, fast, by_opengl, without_opengl = [], [], [], None
     for _ in range(rounds):
         own.append(tool.render(scene, *RESOLUTION, *repeat))
         fast.append(tool.render(scene, *RESOLUTION, *repeat, *FAST, output="fast.npy"))
-        by_opengl.append(tool.render(scene, *RESOLUTION, *repeat, *FAST, "--backend", "gl", output="gl.npy"))
+        try:
+            by_opengl.append(tool.render(scene, *RESOLUTION, *repeat, *FAST, "--backend", "gl", output="gl.npy"))
+        except Failed as error:
+            without_opengl = skipped(error)
         for peer in peers.values():
             peer.frame()
     row = {
         "tetravox": summary(own, tool.path("picture.npy"), exact),
         "fast": summary(fast, tool.path("fast.npy"), exact),
-        "gl": summary(by_opengl, tool.path("gl.npy"), exact),
+        "gl": without_opengl or summary(by_opengl, tool.path("gl.npy"), exact),
     }
     for name, peer in peers.items():
-        row[name] = peer.finish(tool.path("peer.npy"), exact, ratio=frame_seconds(own), fast_ratio=frame_seconds(fast),
-                                gl_ratio=frame_seconds(by_opengl))
+        times = {"ratio": own, "fast_ratio": fast, "gl_ratio": by_opengl}
+        row[name] = peer.finish(tool.path("peer.npy"), exact,
+                                **{key: frame_seconds(runs) for key, runs in times.items() if runs})
     return row
 
 

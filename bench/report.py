@@ -55,7 +55,7 @@ def own_row(names, own, ratios):
 def peer_row(names, peer, other, ratios):
     if "skipped" in other:
         return [*names, *skipped_row(other, peer, 6 + len(ratios))]
-    return [*names, f"VTK {other['vtk']} {peer}", seconds(other["frame"]), *(f"{other[key]:.1f}×" for key in ratios),
+    return [*names, f"VTK {other['vtk']} {peer}", seconds(other["frame"]), *(f"{other[key]:.1f}×" if key in other else "–" for key in ratios),
             error(other["error"]), seconds(other["read"]), "– / " + seconds(other["first_frame"]),
             megabytes(other["peak_rss"])]
 
@@ -129,7 +129,8 @@ def grid_table(rows):
             continue
         lines.append(own_row([name, "**tetravox**"], row["tetravox"], ratios))
         lines.append(own_row([name, "**tetravox**, fast"], row["fast"], ratios))
-        lines.append(own_row([name, "**tetravox**, fast, OpenGL"], row["gl"], ratios))
+        if "skipped" not in row["gl"]:
+            lines.append(own_row([name, "**tetravox**, fast, OpenGL"], row["gl"], ratios))
         lines += [peer_row([name], peer, row[peer], ratios) for peer in GRID_PEERS]
     return table(header, lines)
 

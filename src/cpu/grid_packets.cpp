@@ -33,7 +33,7 @@ const optics::SlabTable& SlabCache::prepare(const ValueRange& range, const Integ
                                             const Kernels& kernels, float thickness) {
   if (thickness == thickness_ && tables.tolerance == tolerance_) return table_;
   constexpr int kNodes = optics::SlabTable::kNodes;
-  const auto width = static_cast<float>((range.max - range.min) / (kNodes - 1));
+  const auto width = static_cast<float>(optics::SlabTable::node_width(range));
   table_.first = static_cast<float>(range.min);
   table_.nodes_per_scalar = width > 0.0f ? 1.0f / width : 1.0f;
   table_.entries.resize(static_cast<std::size_t>(kNodes) * kNodes);
@@ -46,12 +46,9 @@ const optics::SlabTable& SlabCache::prepare(const ValueRange& range, const Integ
   return table_;
 }
 
-GridPackets::GridPackets(const PreparedGrid& grid, std::span<const scene::BrickPlan> plans, March march,
+GridPackets::GridPackets(const PreparedGrid& grid, std::span<const std::uint8_t> seen_spans, March march,
                          const MarchJob& job)
-    : march_(march),
-      values_(describe_values(grid)),
-      tables_(*job.tables),
-      seen_spans_(scene::list_seen_spans(grid.bricks.counts, plans)) {
+    : march_(march), values_(describe_values(grid)), tables_(*job.tables), seen_spans_(seen_spans) {
   for (int axis = 0; axis < 3; ++axis) job_.brick_counts[axis] = static_cast<std::int32_t>(grid.bricks.counts[axis]);
   job_.is_large = grid.data.values.size() > kCachedBytes;
   job_.sample_distance = job.sample_distance;

@@ -5,16 +5,15 @@
 
 #include "src/cpu/kernels/kernels.h"
 #include "src/optics/slab_table.h"
-#include "src/scene/brick_plan.h"
 #include "tetravox/grid.h"
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace tetravox::cpu {
 
-/// Ray integrals of slabs as thick as two samples are apart. Made again when function, distance or tolerance change.
+/// Ray integrals of slabs as thick as two samples are apart, made again when distance or tolerance change; and for a
+/// new function, after `invalidate`.
 class SlabCache {
  public:
   static constexpr std::size_t kBytes = sizeof(float[4]) * optics::SlabTable::kNodes * optics::SlabTable::kNodes;
@@ -35,8 +34,9 @@ class GridPackets {
  public:
   using March = std::uint64_t (*)(const PacketJob& job);
 
-  /// `march`: the kernel that integrates segments one by one. `job`: what the rays of the frame would do in bricks.
-  GridPackets(const PreparedGrid& grid, std::span<const scene::BrickPlan> plans, March march, const MarchJob& job);
+  /// `seen_spans`: see scene::list_seen_spans; it and `grid` must outlive this. `march`: the kernel that integrates
+  /// segments one by one. `job`: what the rays of the frame would do in bricks.
+  GridPackets(const PreparedGrid& grid, std::span<const std::uint8_t> seen_spans, March march, const MarchJob& job);
 
   /// Looks slabs up instead, by the kernel `march`.
   void use_slabs(const optics::SlabTable& slabs, March march);
@@ -48,7 +48,7 @@ class GridPackets {
   March march_;
   MarchValues values_;
   IntegratorTables tables_;
-  std::vector<std::uint8_t> seen_spans_;  // [bricks], see `PacketJob`
+  std::span<const std::uint8_t> seen_spans_;  // [bricks]
   PacketJob job_;
 };
 

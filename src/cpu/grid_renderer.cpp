@@ -16,6 +16,7 @@
 #include "src/optics/transparency_table.h"
 #include "src/scene/brick_plan.h"
 #include "src/scene/filtered_field.h"
+#include "src/scene/fixed_rate.h"
 #include "src/scene/preintegration_cache.h"
 #include "src/support/threads.h"
 #include "src/support/timer.h"
@@ -25,8 +26,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -109,7 +108,8 @@ class GridRenderer final : public scene::FrameRenderer {
 
   std::uint64_t missing_bytes(const RenderSettings& settings) const override {
     return estimate_render_memory(grid_.data, settings) -
-           std::min(preintegration_.bytes(), scene::preintegration_bytes(settings));
+           std::min(preintegration_.bytes(), scene::preintegration_bytes(settings)) -
+           (settings.samples_per_voxel > 0.0 ? slabs_.bytes() : 0);
   }
 
   std::uint64_t bytes() const override {
@@ -117,7 +117,7 @@ class GridRenderer final : public scene::FrameRenderer {
            (plans_.size() + group_plans_.size()) * sizeof(scene::BrickPlan) +
            (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_ +
            centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() +
-           preintegration_.bytes() + slabs_.bytes();
+           preintegration_.bytes() + slabs_.bytes() + seen_spans_.size();
   }
 
   std::vector<Source> sources() const override { return {Source::kMarch}; }
@@ -175,6 +175,7 @@ class GridRenderer final : public scene::FrameRenderer {
   scene::BrickGroups groups_;
   std::vector<scene::BrickPlan> plans_, group_plans_;
   std::vector<std::uint32_t> visible_;
+  std::vector<std::uint8_t> seen_spans_;  // where steps are counted
   std::uint64_t frame_bytes_ = 0;
 };
 
@@ -304,6 +305,8 @@ void GridRenderer::plan(const RenderSettings& settings) {
   group_plans_ = scene::plan_groups(sources, wanted);
   plans_ = scene::plan_bricks(sources, wanted, group_plans_);
   visible_ = scene::list_drawn(sources, group_plans_, plans_);
+  seen_spans_.clear();
+  if (scene::counts_steps(grid_, settings)) seen_spans_ = scene::list_seen_spans(grid_.bricks.counts, plans_);
   planned_for_ = wanted;
   is_planned_ = true;
 }
@@ -324,15 +327,12 @@ MarchJob GridRenderer::make_job(const RenderSettings& settings, const Integrator
 /// At a fixed rate, where the values serve as they lie: rays in packets instead of bricks.
 std::optional<GridPackets> GridRenderer::make_packets(const RenderSettings& settings, const Kernels& kernels,
                                                       const MarchJob& job) {
-  if (settings.samples_per_voxel == 0.0 || !scene::counts_steps(grid_, settings.filter, settings.integrator)) return {};
-  if (settings.integrator == Integrator::kPartial) return GridPackets(grid_, plans_, kernels.packets_partial, job);
-  GridPackets packets(grid_, plans_, kernels.packets_antiderivative, job);
-  const ValueRange stored = scene::stored_range(grid_);
-  if (optics::rounding_error(
-          stored.max - stored.min,
-          steepness_.largest_steepness(static_cast<float>(stored.min), static_cast<float>(stored.max)),
-          diagonal()) <= settings.tolerance)
-    packets.use_slabs(slabs_.prepare(stored, *job.tables, kernels, job.sample_distance), kernels.packets_slabs);
+  if (!scene::counts_steps(grid_, settings)) return {};
+  if (settings.integrator == Integrator::kPartial) return GridPackets(grid_, seen_spans_, kernels.packets_partial, job);
+  GridPackets packets(grid_, seen_spans_, kernels.packets_antiderivative, job);
+  if (scene::may_look_slabs_up(grid_, steepness_, settings))
+    packets.use_slabs(slabs_.prepare(scene::stored_range(grid_), *job.tables, kernels, job.sample_distance),
+                      kernels.packets_slabs);
   return packets;
 }
 

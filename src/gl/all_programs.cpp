@@ -68,10 +68,8 @@ std::vector<ProgramRecipe> all_programs() {
   add_projection(programs);
   for (const MarchKind& kind : march_kinds())
     programs.push_back({"march, " + kind.shader.name, {recipe_of_march(kind)}});
-  for (const auto& shaders : {all_integrator_shaders(), bounded_integrator_shaders()})
-    for (const IntegratorShader& integrator : shaders)
-      if (integrator.name.starts_with("antiderivative") || integrator.name.starts_with("gentle"))
-        programs.push_back({"slabs, " + integrator.name, {recipe_of_slabs(integrator)}});
+  for (const IntegratorShader& integrator : slab_filling_shaders())
+    programs.push_back({"slabs, " + integrator.name, {recipe_of_slabs(integrator)}});
   for (const auto& [name, stages] : recipes_of_tables()) programs.push_back({"tables, " + name, stages});
   add_slices(programs);
   return programs;

@@ -8,10 +8,10 @@
 #include "src/gl/slice_block.h"
 #include "src/gl/slice_passes.h"
 #include "src/grid/frame.h"
-#include "src/optics/slab_table.h"
 #include "src/optics/steepness_table.h"
 #include "src/scene/brick_plan.h"
 #include "src/scene/filtered_field.h"
+#include "src/scene/fixed_rate.h"
 #include "src/scene/grid_view.h"
 #include "src/support/threads.h"
 #include "src/support/timer.h"
@@ -96,14 +96,6 @@ class GridRenderer final : public scene::FrameRenderer {
     return context_->device().is_software && !scene::wants_kernel(settings.filter) && !is_constant(settings) &&
            settings.integrator != Integrator::kPre;
   }
-  /// Whether segments of a fixed rate may be looked up with their scalars rounded.
-  bool wants_slabs(const RenderSettings& settings) const {
-    const ValueRange stored = scene::stored_range(grid_);
-    const float steepness =
-        steepness_.largest_steepness(static_cast<float>(stored.min), static_cast<float>(stored.max));
-    return settings.integrator == Integrator::kAntiderivative &&
-           optics::rounding_error(stored.max - stored.min, steepness, diagonal()) <= settings.tolerance;
-  }
   void march(const scene::GridView& view, const RenderSettings& settings, const scene::FrameContext& context,
              RenderStatistics& statistics);
   MarchBlock describe(const scene::GridView& view, const RenderSettings& settings) const;
@@ -169,7 +161,8 @@ MarchKind GridRenderer::kind_of(const RenderSettings& settings) const {
       settings.samples_per_voxel > 0.0 && !kind.is_constant && !scene::restarts_rate(drawn(), settings.integrator);
   if (kind.is_constant) kind.integrator = Integrator::kAntiderivative;  // all are the same
   if (takes_points(kind) || kind.has_samples) return kind;
-  kind.has_runs = settings.samples_per_voxel > 0.0 && scene::counts_steps(grid_, settings.filter, settings.integrator);
+  kind.has_runs = scene::counts_steps(grid_, settings);
+  if (kind.has_runs) return kind;
   kind.has_strides = steps_.has_strides;
   kind.has_cells = steps_.has_cells || !steps_.has_strides;
   return kind;
@@ -251,12 +244,12 @@ void GridRenderer::march(const scene::GridView& view, const RenderSettings& sett
     kind.has_squares = true;
   }
   MarchBlock block = describe(view, settings);
-  block.most_work = pieces_a_pass(kind.shader);
-  if (kind.has_runs && wants_slabs(settings)) {
+  if (kind.has_runs && scene::may_look_slabs_up(grid_, steepness_, settings)) {
     device.slabs.make(block, kind.shader, settings.tolerance);
     device.slabs.bind();
     kind.shader = slab_shader();
   }
+  block.most_work = pieces_a_pass(kind.shader);
   MarchFrame frame{block, kind, device.frame, settings, context_->limits(), context.progress};
   const scene::PlanSources sources = plan_sources(settings);
   const FilteredBricks filtered = filtered_bricks(sources, settings);

@@ -1,5 +1,7 @@
 #include "src/gl/march_bricks.h"
 
+#include "src/scene/fixed_rate.h"
+
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -31,6 +33,12 @@ RaySteps find_ray_steps(const scene::PlanSources& sources, const std::vector<sce
     const double depth = length * static_cast<double>(sources.steepness->largest_extinction(min, max));
     steps.segments.depth = std::max(steps.segments.depth, depth);
     steps.segments.error = std::max(steps.segments.error, depth * depth * tables.color_change(min, max));
+  }
+  // Steps that are counted on may lead from one brick through the next.
+  if (lengths.sampled > 0.0) {
+    const ValueRange all = scene::stored_range(*sources.grid);
+    const double change = tables.color_change(static_cast<float>(all.min), static_cast<float>(all.max));
+    steps.segments.error = steps.segments.depth * steps.segments.depth * change;
   }
   return steps;
 }

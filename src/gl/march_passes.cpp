@@ -26,6 +26,15 @@ std::string marcher_file(const MarchKind& kind) {
   return kind.has_cells ? "march_scalars.glsl" : "march_strides.glsl";
 }
 
+/// Of steps that are counted: what integrates each segment, or looks it up.
+std::vector<IntegratorShader> run_shaders() {
+  std::vector<IntegratorShader> shaders = slab_filling_shaders();
+  for (const IntegratorShader& shader : all_integrator_shaders())
+    if (shader.name == "partial") shaders.push_back(shader);
+  shaders.push_back(slab_shader());
+  return shaders;
+}
+
 std::string key_of(const MarchKind& kind) {
   std::string key = name_of(kind.integrator) + " " + kind.shader.name;
   for (const bool flag : {kind.is_uneven, kind.is_constant, kind.is_nearest, kind.has_nodes, kind.has_squares,
@@ -74,9 +83,6 @@ std::vector<MarchKind> march_kinds() {
       kind.has_cells = true;
       add(kind);
       if (kind.has_samples || kind.is_uneven) continue;
-      kind.has_runs = !kind.has_nodes;
-      if (kind.has_runs) add(kind);
-      kind.has_runs = false;
       kind.has_strides = true;
       add(kind);
       kind.has_cells = false;
@@ -106,19 +112,21 @@ std::vector<MarchKind> march_kinds() {
           add_each_way(kind);
         }
         kind.integrator = Integrator::kAntiderivative;
-        kind.shader = slab_shader();
-        kind.has_runs = true;
-        for (const bool has_squares : {false, true}) {
-          kind.has_squares = has_squares;
-          if (!is_uneven && !has_nodes && !has_samples) add(kind);
-        }
-        kind.has_runs = false;
         for (const IntegratorShader& shader : bounded_integrator_shaders()) {
           kind.shader = shader;
           if (!has_samples) add_each_way(kind);
         }
       }
   }
+  for (const IntegratorShader& shader : run_shaders())
+    for (const bool has_squares : {false, true}) {
+      MarchKind kind;
+      kind.integrator = shader.name == "partial" ? Integrator::kPartial : Integrator::kAntiderivative;
+      kind.shader = shader;
+      kind.has_runs = true;
+      kind.has_squares = has_squares;
+      kinds.push_back(kind);
+    }
   return kinds;
 }
 

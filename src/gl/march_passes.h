@@ -1,6 +1,6 @@
 #pragma once
 
-/// The passes of the source `march`: rays go through the bricks of a grid, some bricks a pass.
+/// The passes of the source `march`: rays go through a grid, some bricks or steps a pass.
 
 #include "src/gl/blocks.h"
 #include "src/gl/frame_parts.h"
@@ -28,7 +28,7 @@ struct MarchKind {
   bool is_nearest = false;   ///< of these: eighths of cells, each with the value of its corner
   bool has_nodes = false;    ///< lattices of filtered values instead of the grid's own
   bool has_squares = false;  ///< four values in each texel
-  bool has_samples = false;  ///< a fixed rate, counted on from the eye
+  bool has_samples = false;  ///< a fixed rate, samples counted on from cell to cell
   bool has_runs = false;     ///< a fixed rate, steps counted on through the whole grid (scene::counts_steps)
   // Of scalars that are no such samples:
   bool has_strides = false;  ///< bricks in which rays go in equal steps

@@ -21,11 +21,19 @@ ShaderRecipe recipe_of_slabs(const IntegratorShader& integrator) {
   return recipe;
 }
 
+std::vector<IntegratorShader> slab_filling_shaders() {
+  std::vector<IntegratorShader> shaders;
+  for (const auto& all : {all_integrator_shaders(), bounded_integrator_shaders()})
+    for (const IntegratorShader& shader : all)
+      if (shader.name.starts_with("antiderivative") || shader.name.starts_with("gentle")) shaders.push_back(shader);
+  return shaders;
+}
+
 IntegratorShader slab_shader() { return {"slabs", "integrators/slab.glsl", {}, 1}; }
 
 void Slabs::describe(const ValueRange& scalars, MarchBlock& block) {
-  const double width = scalars.max - scalars.min;
-  const double scale = width > 0.0 ? (kNodes - 1) / width : 1.0;  // nodes for a stored scalar
+  const double width = optics::SlabTable::node_width(scalars);
+  const double scale = width > 0.0 ? 1.0 / width : 1.0;
   block.slab_scale = static_cast<float>(scale / kNodes);
   block.slab_offset = static_cast<float>((0.5 - scalars.min * scale) / kNodes);
 }

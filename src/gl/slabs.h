@@ -10,11 +10,14 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace tetravox::gl {
 
-/// Fills a picture of them by `integrator`, that of what passes for the segments of a frame; and looks them up.
+/// Fills a picture of them by the integrator of a frame's segments, one of `slab_filling_shaders`.
 ShaderRecipe recipe_of_slabs(const IntegratorShader& integrator);
+std::vector<IntegratorShader> slab_filling_shaders();
+/// Looks them up.
 IntegratorShader slab_shader();
 
 /// With the context current.

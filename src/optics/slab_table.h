@@ -2,6 +2,8 @@
 
 /// Ray integrals of slabs of one thickness.
 
+#include "tetravox/dataset.h"
+
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -12,6 +14,7 @@ namespace tetravox::optics {
 /// Engel, Kraus and Ertl 2001).
 struct SlabTable {
   static constexpr int kNodes = 512;  ///< over the range of the scalars
+  static double node_width(const ValueRange& scalars) { return (scalars.max - scalars.min) / (kNodes - 1); }
 
   float first = 0.0f;                         ///< stored scalar at node 0
   float nodes_per_scalar = 1.0f;              ///< node = (stored - first) * nodes_per_scalar
@@ -20,12 +23,12 @@ struct SlabTable {
   std::size_t bytes() const { return entries.size() * sizeof(entries[0]); }
 };
 
-/// What a picture errs by at most where scalars of a range of `width` are rounded to nodes: `steepness` is the largest
+/// What a picture errs by at most where scalars are rounded to nodes: `steepness` is the largest
 /// change of density with the scalar, `longest` the world length of the longest ray. Scalars on both sides of their
 /// nodes cancel out: measured, it is a hundredth at most of what it would be if all of the longest ray were half a node
 /// off, to the same side, where the function is steepest. Three times that.
-inline double rounding_error(double width, double steepness, double longest) {
-  return 0.03 * 0.5 * width / (SlabTable::kNodes - 1) * steepness * longest;
+inline double rounding_error(const ValueRange& scalars, double steepness, double longest) {
+  return 0.03 * 0.5 * SlabTable::node_width(scalars) * steepness * longest;
 }
 
 }  // namespace tetravox::optics

@@ -4,7 +4,6 @@
 #include "src/support/threads.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace tetravox::scene {
 namespace {
@@ -173,24 +172,6 @@ bool restarts_rate(const PreparedGrid& grid, Integrator integrator) {
   return is_exact && has_even_axes(grid) && grid.missing_values == 0;
 }
 
-bool counts_steps(const PreparedGrid& grid, const Filter& filter, Integrator integrator) {
-  constexpr auto kMostBytes = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
-  const GridData& data = grid.data;
-  const bool is_in_place = data.association == Association::kPoint && data.components == 1 &&
-                           data.values.size() <= kMostBytes && grid.scalar_offset == 0.0 && grid.scalar_scale > 1e-30 &&
-                           grid.scalar_scale < 1e30;
-  switch (data.type) {
-    case ScalarType::kInt8:
-    case ScalarType::kUint8:
-    case ScalarType::kInt16:
-    case ScalarType::kUint16:
-    case ScalarType::kFloat32:
-      return is_in_place && filter.kind == FilterKind::kLinear && restarts_rate(grid, integrator);
-    default:
-      return false;
-  }
-}
-
 float allowed_rate_of(double tolerance, double diagonal) {
   return static_cast<float>(kRatePerTolerance * tolerance / diagonal);
 }
@@ -199,11 +180,6 @@ float most_pieces_of(double tolerance) { return tolerance < kFineTolerance ? kMo
 
 float allowed_haze_of(double tolerance, double diagonal) {
   return static_cast<float>(kHazeOfTolerance * tolerance / diagonal);
-}
-
-ValueRange stored_range(const PreparedGrid& grid) {
-  const auto stored = [&](double value) { return (value - grid.scalar_offset) / grid.scalar_scale; };
-  return {stored(grid.scalar_range.min), stored(grid.scalar_range.max)};
 }
 
 ValueRange range_of(const PlanSources& sources, std::size_t brick) {
@@ -234,24 +210,6 @@ std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSetting
         for_each_brick(sources, group, [&](std::size_t i) { plans[i] = planner.plan(i); });
   });
   return plans;
-}
-
-std::vector<std::uint8_t> list_seen_spans(const std::array<std::uint32_t, 3>& counts,
-                                          std::span<const BrickPlan> plans) {
-  std::vector<std::uint8_t> spans(plans.size());
-  for (std::size_t i = 0; i < plans.size(); ++i) spans[i] = plans[i].level != BrickPlan::kTransparent;
-  // Spans with an axis are those without it, of the brick and of the next one along the axis.
-  std::size_t stride = 1;
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    const unsigned known = (1u << (1u << axis)) - 1u;
-    for (std::size_t i = 0; i < spans.size(); ++i) {
-      const bool has_next = i / stride % counts[axis] + 1 < counts[axis];
-      const unsigned here = spans[i] & known, next = has_next ? spans[i + stride] & known : 0u;
-      spans[i] = static_cast<std::uint8_t>(here | (here | next) << (1u << axis));
-    }
-    stride *= counts[axis];
-  }
-  return spans;
 }
 
 std::vector<std::uint32_t> list_drawn(const PlanSources& sources, std::span<const BrickPlan> of_groups,

@@ -8,7 +8,6 @@
 #include "tetravox/grid.h"
 #include "tetravox/render.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -57,13 +56,8 @@ struct PlanSources {
 };
 
 /// Whether steps of a fixed rate may start anew in each brick, where it hardly matters where samples lie: exactly
-/// integrated ones on even axes, with nothing missing. Elsewhere samples are counted on from the eye, in every cell.
+/// integrated ones on even axes, with nothing missing. Elsewhere samples are counted on from cell to cell.
 bool restarts_rate(const PreparedGrid& grid, Integrator integrator);
-
-/// Whether such steps are counted on through the whole grid instead, in packets of rays that read values where they
-/// lie: points of one component, 8 or 16 bits or float, 2 GiB at most, stored as they are but for a factor, between
-/// which the field is linear.
-bool counts_steps(const PreparedGrid& grid, const Filter& filter, Integrator integrator);
 
 /// Error in colour for one unit of world length that segments may have.
 float allowed_rate_of(double tolerance, double diagonal);
@@ -73,9 +67,6 @@ float most_pieces_of(double tolerance);
 
 /// Extinction, per world length, that counts as none.
 float allowed_haze_of(double tolerance, double diagonal);
-
-/// Range of all stored scalars.
-ValueRange stored_range(const PreparedGrid& grid);
 
 /// Range of the field in a brick; min > max where it is missing throughout.
 ValueRange range_of(const PlanSources& sources, std::size_t brick);
@@ -88,10 +79,6 @@ std::vector<BrickPlan> plan_groups(const PlanSources& sources, const PlanSetting
 /// Microseconds for a thousand bricks, on all cores.
 std::vector<BrickPlan> plan_bricks(const PlanSources& sources, const PlanSettings& settings,
                                    std::span<const BrickPlan> of_groups = {});
-
-/// [bricks] bit `span`: whether the brick is seen, or one of those up to one further along the axes whose bits are set
-/// in `span`.
-std::vector<std::uint8_t> list_seen_spans(const std::array<std::uint32_t, 3>& counts, std::span<const BrickPlan> plans);
 
 /// What is to be drawn, numbered as in brick_groups.h: groups that are single cells, and other bricks that are seen.
 std::vector<std::uint32_t> list_drawn(const PlanSources& sources, std::span<const BrickPlan> of_groups,

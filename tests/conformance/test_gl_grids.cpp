@@ -22,6 +22,8 @@ constexpr double kMostApart = 3e-3, kMostApartRms = 3e-4;
 /// Point samples are all or nothing: where the number of a cell's pieces, or the cell of a sample, is decided by
 /// rounding, single pixels differ. So many of a thousand may.
 constexpr int kApartOfThousand = 10;
+/// Of slabs: where a ray enters or leaves it passes a part of one, which OpenGL takes to be of one colour.
+constexpr double kSlabsApart = 1e-2, kSlabsApartRms = 5e-4;
 /// What both promise to err by (test_grid_pictures.cpp).
 constexpr double kMostWrong = 4e-3, kMostWrongRms = 3e-4;
 
@@ -185,6 +187,27 @@ TEST(GlGridPasses, RaysThroughManyBricksGoOnInFurtherPasses) {
         RenderSettings settings = tests::make_settings(integrator, 77, 53);
         settings.samples_per_voxel = rate;
         pair.expect_same(camera, settings, std::string(function) + " " + text_of({}, integrator, rate));
+      }
+  }
+}
+
+/// Slabs are looked up; functions and tolerances that ask for new ones.
+TEST_P(GlGrids, SlabsAreThoseOfTheCpu) {
+  TETRAVOX_REQUIRE_GL();
+  const GridSubject scene(grid());
+  Pair pair(scene.grid);
+  for (const char* function : {"smooth", "thick", "steps", "random", "smooth"}) {
+    pair.set_transfer_function(scene.function(function));
+    for (const double tolerance : {0.1, 0.02})
+      for (const double rate : {0.8, 3.0}) {
+        RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 77, 53);
+        settings.samples_per_voxel = rate;
+        settings.tolerance = tolerance;
+        settings.use_early_ray_termination = false;  // rays of a packet end runs together
+        EXPECT_TRUE(tests::images_agree(pair.gl.render(scene.camera("outside"), settings),
+                                        pair.cpu.render(scene.camera("outside"), settings), kSlabsApart,
+                                        kSlabsApartRms))
+            << function << " " << tolerance << " " << rate;
       }
   }
 }

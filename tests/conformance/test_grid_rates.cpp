@@ -1,11 +1,13 @@
 /// Grids at a fixed rate: against the exact picture, and against each other.
 
-#include "src/scene/brick_plan.h"
+#include "src/scene/fixed_rate.h"
 #include "tests/common/image_compare.h"
 #include "tests/conformance/grid_scenes.h"
 #include "tests/reference/grid_integrator.h"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -35,6 +37,13 @@ TEST(GridRates, ConvergeToTheExactPicture) {
   }
 }
 
+RenderSettings at_rate(double rate, Integrator integrator, double tolerance = 2e-3) {
+  RenderSettings settings = tests::make_settings(integrator, 64, 48);
+  settings.samples_per_voxel = rate;
+  settings.tolerance = tolerance;
+  return settings;
+}
+
 /// Number types whose values rays read where they lie.
 constexpr ScalarType kInPlace[] = {ScalarType::kInt8, ScalarType::kUint8, ScalarType::kInt16, ScalarType::kUint16,
                                    ScalarType::kFloat32};
@@ -48,19 +57,12 @@ GridData make_numbers(ScalarType type) {
   return make_grid(options, [&](const Vector3& p) { return std::round(100.0 * field(p)); });
 }
 
-RenderSettings at_rate(double rate, Integrator integrator, double tolerance = 2e-3) {
-  RenderSettings settings = tests::make_settings(integrator, 64, 48);
-  settings.samples_per_voxel = rate;
-  settings.tolerance = tolerance;
-  return settings;
-}
-
 TEST(GridRates, NumberTypesAreReadWhereTheyLie) {
   const GridSubject doubles(make_numbers(ScalarType::kFloat64));
-  EXPECT_FALSE(scene::counts_steps(doubles.grid, {}, Integrator::kAntiderivative));
+  EXPECT_FALSE(scene::counts_steps(doubles.grid, at_rate(1.0, Integrator::kAntiderivative)));
   for (const ScalarType type : kInPlace) {
     const GridSubject scene(make_numbers(type));
-    EXPECT_TRUE(scene::counts_steps(scene.grid, {}, Integrator::kAntiderivative));
+    EXPECT_TRUE(scene::counts_steps(scene.grid, at_rate(1.0, Integrator::kAntiderivative)));
     for (const auto& [name, camera] : doubles.cameras)
       for (const Integrator integrator : tests::kExactIntegrators) {
         const RenderSettings settings = at_rate(24.0, integrator);
@@ -100,20 +102,23 @@ TEST(GridRates, OtherGridsGoFromBrickToBrick) {
     const std::string name = grid_name;
     const PreparedGrid grid = prepare_grid(data);
     const bool is_in_place = name != "uneven" && name != "cell_data" && name != "holes";
-    EXPECT_EQ(scene::counts_steps(grid, {}, Integrator::kPartial), is_in_place) << name;
-    EXPECT_FALSE(scene::counts_steps(grid, {}, Integrator::kPost)) << name;
-    EXPECT_FALSE(scene::counts_steps(grid, {FilterKind::kBspline}, Integrator::kPartial)) << name;
+    EXPECT_EQ(scene::counts_steps(grid, at_rate(1.0, Integrator::kPartial)), is_in_place) << name;
+    EXPECT_FALSE(scene::counts_steps(grid, at_rate(0.0, Integrator::kPartial))) << name;
+    EXPECT_FALSE(scene::counts_steps(grid, at_rate(1.0, Integrator::kPost))) << name;
+    RenderSettings filtered = at_rate(1.0, Integrator::kPartial);
+    filtered.filter.kind = FilterKind::kBspline;
+    EXPECT_FALSE(scene::counts_steps(grid, filtered)) << name;
   }
   const tests::Field field = tests::make_random_field(5, 2.0);
   const PreparedGrid vectors = prepare_grid(tests::make_vector_grid({}, {field, field}, 1));
-  EXPECT_FALSE(scene::counts_steps(vectors, {}, Integrator::kPartial));
+  EXPECT_FALSE(scene::counts_steps(vectors, at_rate(1.0, Integrator::kPartial)));
 }
 
 /// Segments of the same ends, looked up with these rounded or integrated exactly.
 TEST(GridRates, SlabsErrNoMoreThanTheTolerance) {
   for (const auto& [name, data] : make_hard_grids()) {
     const GridSubject scene(data);
-    if (!scene::counts_steps(scene.grid, {}, Integrator::kPartial)) continue;
+    if (!scene::counts_steps(scene.grid, at_rate(1.0, Integrator::kPartial))) continue;
     for (const auto& [function_name, function] : scene.functions)
       for (const auto& [camera_name, camera] : scene.cameras)
         for (const double tolerance : {0.1, 0.02})
@@ -126,6 +131,46 @@ TEST(GridRates, SlabsErrNoMoreThanTheTolerance) {
             EXPECT_LE(difference.max, tolerance) << name << " " << function_name << " " << camera_name;
             EXPECT_LE(difference.rms, tolerance / 10.0) << name << " " << function_name << " " << camera_name;
           }
+  }
+}
+
+/// Slabs looked up or integrated, whole rays and clipped ones.
+TEST(GridRates, InstructionSetsGiveTheSameBytes) {
+  for (const ScalarType type : kInPlace) {
+    const GridSubject scene(make_numbers(type));
+    for (const char* function : {"smooth", "thick", "steps"})
+      for (const double tolerance : {0.1, 2e-3})
+        for (const bool is_clipped : {false, true}) {
+          RenderSettings settings = at_rate(0.8, Integrator::kAntiderivative, tolerance);
+          if (is_clipped) settings.clipping.shapes.push_back({ClipSphere{{0.1, 0.0, -0.1}, 0.6}, false});
+          const Image first = render(scene.grid, scene.function(function), scene.camera("outside"), settings);
+          for (const std::string& instruction_set : instruction_sets()) {
+            settings.instruction_set = instruction_set;
+            EXPECT_TRUE(tests::images_equal(
+                render(scene.grid, scene.function(function), scene.camera("outside"), settings), first))
+                << static_cast<int>(type) << " " << function << " " << tolerance << " " << instruction_set;
+          }
+        }
+  }
+}
+
+/// So few pixels that rays side by side are many bricks apart, and steps of many cells.
+TEST(GridRates, RaysFarApartMissNothing) {
+  tests::GridOptions options;
+  options.dimensions = {70, 66, 74};
+  const GridSubject scene(make_grid(options, [](const Vector3& p) {
+    return std::exp(-40.0 * ((p[0] - 0.6) * (p[0] - 0.6) + p[1] * p[1] + p[2] * p[2]));
+  }));
+  for (const auto& [name, camera] : scene.cameras) {
+    RenderSettings settings = at_rate(16.0, Integrator::kPartial);
+    settings.width = settings.height = 7;
+    RenderSettings exact = settings;
+    exact.samples_per_voxel = 0.0;
+    EXPECT_TRUE(tests::images_agree(render(scene.grid, scene.function("smooth"), camera, settings),
+                                    render(scene.grid, scene.function("smooth"), camera, exact), 4e-3, 1e-3))
+        << name;
+    settings.samples_per_voxel = 0.05;
+    EXPECT_TRUE(tests::is_valid_picture(render(scene.grid, scene.function("smooth"), camera, settings))) << name;
   }
 }
 
@@ -161,6 +206,24 @@ TEST(GridRates, SlabsFollowTheSettings) {
         EXPECT_TRUE(tests::images_equal(renderer.render(camera, settings),
                                         render(scene.grid, scene.function(function), camera, settings)))
             << function << " " << rate << " " << tolerance;
+      }
+  }
+}
+
+TEST(GridRates, SpansAreSeenWhereABrickIs) {
+  const std::array<std::uint32_t, 3> counts{4, 3, 2};
+  for (std::uint32_t seen = 0; seen < 24; ++seen) {
+    std::vector<scene::BrickPlan> plans(24);
+    plans[seen].level = 0;
+    const std::vector<std::uint8_t> spans = scene::list_seen_spans(counts, plans);
+    const std::uint32_t at[3] = {seen % 4, seen / 4 % 3, seen / 12};
+    for (std::uint32_t brick = 0; brick < 24; ++brick)
+      for (std::uint32_t span = 0; span < 8; ++span) {
+        const std::uint32_t from[3] = {brick % 4, brick / 4 % 3, brick / 12};
+        bool is_inside = true;
+        for (std::uint32_t axis = 0; axis < 3; ++axis)
+          is_inside &= at[axis] >= from[axis] && at[axis] <= from[axis] + (span >> axis & 1u);
+        EXPECT_EQ((spans[brick] >> span & 1u) != 0, is_inside) << seen << " " << brick << " " << span;
       }
   }
 }

@@ -55,7 +55,8 @@ class PacketMarcher {
     Float scalar;
     typename Integrator::Front front;
     Accumulated sum;
-    Mask met, settled;
+    Int taken;  // steps
+    Mask settled;
 
     HWY_INLINE Float depth_at(float number) const {
       return hn::Min(hn::Max(hn::Mul(constant(number), distance), enter), leave);
@@ -134,7 +135,8 @@ class PacketMarcher {
     rays.leave = hn::IfThenElse(misses, hn::Neg(never), rays.leave);
     const Record sums = load_table_records(tile.sums, hn::BitCast(kUint, index));
     rays.sum = {sums.x, sums.y, sums.z, sums.w};
-    rays.met = rays.settled = hn::FirstN(kFloat, 0);
+    rays.taken = hn::Zero(kInt);
+    rays.settled = hn::FirstN(kFloat, 0);
   }
 
   void march(int column, int row) {
@@ -171,20 +173,30 @@ class PacketMarcher {
     for (const Rays& rays : packet) arrive(rays);
   }
 
-  /// Whether any brick of those that the run may touch is seen. Runs hardly ever reach over more than two of an axis.
+  /// Whether any brick of those that the run may touch is seen.
   HWY_INLINE bool touches_seen(const Run& run) const {
-    std::ptrdiff_t brick = 0, stride = 1;
+    std::ptrdiff_t first[3], last[3], brick = 0, stride = 1;
     unsigned span = 0;
+    bool is_wide = false;
     for (int axis = 0; axis < 3; ++axis) {
-      const std::ptrdiff_t last = job_.brick_counts[axis] - 1;
-      const std::ptrdiff_t first = std::min(run.low[axis] / kBrickCells, last);
-      const std::ptrdiff_t more = std::min(run.high[axis] / kBrickCells, last) - first;
-      if (more > 1) return true;
-      span |= static_cast<unsigned>(more) << axis;
-      brick += first * stride;
+      const std::ptrdiff_t end = job_.brick_counts[axis] - 1;
+      first[axis] = std::min(run.low[axis] / kBrickCells, end);
+      last[axis] = std::min(run.high[axis] / kBrickCells, end);
+      is_wide |= last[axis] - first[axis] > 1;
+      span |= static_cast<unsigned>(last[axis] - first[axis]) << axis;
+      brick += first[axis] * stride;
       stride *= job_.brick_counts[axis];
     }
+    if (HWY_UNLIKELY(is_wide)) return any_is_seen(first, last);
     return (job_.seen_spans[brick] >> span & 1u) != 0;
+  }
+  /// Of many: rays far apart, or long steps.
+  HWY_NOINLINE bool any_is_seen(const std::ptrdiff_t first[3], const std::ptrdiff_t last[3]) const {
+    for (std::ptrdiff_t k = first[2]; k <= last[2]; ++k)
+      for (std::ptrdiff_t j = first[1]; j <= last[1]; ++j)
+        for (std::ptrdiff_t i = first[0]; i <= last[0]; ++i)
+          if (job_.seen_spans[(k * job_.brick_counts[1] + j) * job_.brick_counts[0] + i] & 1u) return true;
+    return false;
   }
 
   /// Asks for the values of the next run, whose box is taken to be as far from this one as this one is long.
@@ -197,6 +209,8 @@ class PacketMarcher {
       begin[axis] = std::clamp(run.low[axis] + shift, std::ptrdiff_t{0}, last);
       end[axis] = std::clamp(run.high[axis] + shift + 1, std::ptrdiff_t{0}, last);
     }
+    constexpr std::ptrdiff_t kMostRows = 4 * kRays;  // more are farther apart than the rays can use
+    if ((end[1] - begin[1]) * (end[2] - begin[2]) > kMostRows) return;
     for (std::ptrdiff_t k = begin[2]; k <= end[2]; ++k)
       for (std::ptrdiff_t j = begin[1]; j <= end[1]; ++j)
         __builtin_prefetch(v.values + k * v.slice_bytes + j * v.row_bytes + begin[0] * v.value_bytes);
@@ -221,8 +235,7 @@ class PacketMarcher {
       const Float next = rays.depth_at(number + static_cast<float>(step + 1));
       const Float back = hn::Load(kFloat, backs + step * kLanes), moved = hn::Sub(next, depth);
       const Mask moves = hn::Gt(moved, constant(0.0f));
-      segments_ += hn::CountTrue(kFloat, moves);
-      rays.met = hn::Or(rays.met, moves);
+      rays.taken = hn::Add(rays.taken, hn::IfThenElseZero(int_mask(moves), hn::Set(kInt, 1)));
       integrator_.integrate({scalar, back, hn::Mul(moved, rays.world_per_z)}, rays.front, sum);
       scalar = back;
       depth = next;
@@ -241,15 +254,16 @@ class PacketMarcher {
     return !hn::AllTrue(kFloat, ended);
   }
 
-  void arrive(const Rays& rays) const {
+  void arrive(const Rays& rays) {
     HWY_ALIGN float sums[kLanes][4];
-    HWY_ALIGN std::int32_t met[kLanes], settled[kLanes];
+    HWY_ALIGN std::int32_t taken[kLanes], settled[kLanes];
     hn::StoreInterleaved4(rays.sum.red, rays.sum.green, rays.sum.blue, rays.sum.transmittance, kFloat, sums[0]);
-    hn::Store(hn::IfThenElseZero(int_mask(rays.met), hn::Set(kInt, 1)), kInt, met);
+    hn::Store(rays.taken, kInt, taken);
     hn::Store(hn::IfThenElseZero(int_mask(rays.settled), hn::Set(kInt, 1)), kInt, settled);
     for (std::size_t i = 0; i < kLanes; ++i) {
       std::memcpy(job_.rays->sums[rays.index[i]], sums[i], sizeof sums[i]);
-      if (met[i]) job_.rays->has_met[rays.index[i]] = 1;
+      segments_ += static_cast<std::uint64_t>(taken[i]);
+      if (taken[i] > 0) job_.rays->has_met[rays.index[i]] = 1;
       if (settled[i]) job_.rays->z_far[rays.index[i]] = -kNever;
     }
   }

@@ -73,22 +73,22 @@ inline void start_march(const MarchStart& start) {
 }
 
 /// Part of a vector of rays that lies between two planes of an axis.
-struct Slab {
+struct AxisRange {
   Float enter, leave;
 };
 
-HWY_INLINE Slab clip_slab(const MarchRays& rays, const MarchBrick& brick, int axis, int first) {
+HWY_INLINE AxisRange clip_axis(const MarchRays& rays, const MarchBrick& brick, int axis, int first) {
   const Float origin = hn::Load(kFloat, rays.origin[axis] + first);
   const Float inverse = hn::Load(kFloat, rays.inverse[axis] + first);
   const Float lower = constant(brick.lower[axis]), upper = constant(brick.upper[axis]);
   const Float a = hn::Mul(hn::Sub(lower, origin), inverse), b = hn::Mul(hn::Sub(upper, origin), inverse);
-  const Slab slab{hn::Min(a, b), hn::Max(a, b)};
-  if (HWY_LIKELY(!rays.has_parallel[axis])) return slab;
+  const AxisRange range{hn::Min(a, b), hn::Max(a, b)};
+  if (HWY_LIKELY(!rays.has_parallel[axis])) return range;
   const Float direction = hn::Load(kFloat, rays.direction[axis] + first);
   const Mask parallel = hn::Lt(hn::Abs(direction), constant(kParallel));
   const Mask below_end = brick.is_last[axis] ? hn::Le(origin, upper) : hn::Lt(origin, upper);
   const Float far = hn::IfThenElse(hn::And(hn::Ge(origin, lower), below_end), constant(kNever), constant(-kNever));
-  return {hn::IfThenElse(parallel, constant(-kNever), slab.enter), hn::IfThenElse(parallel, far, slab.leave)};
+  return {hn::IfThenElse(parallel, constant(-kNever), range.enter), hn::IfThenElse(parallel, far, range.leave)};
 }
 
 /// Rays that cross about as many cells travel together: a counting sort by that number.
@@ -138,9 +138,9 @@ inline int clip_brick(const MarchJob& job) {
       const int first = row * kTileSize + column;
       Float enter = hn::Load(kFloat, rays.z_near + first), leave = constant(kNever);
       for (int axis = 0; axis < 3; ++axis) {
-        const Slab slab = clip_slab(rays, brick, axis, first);
-        enter = hn::Max(enter, slab.enter);
-        leave = hn::Min(leave, slab.leave);
+        const AxisRange range = clip_axis(rays, brick, axis, first);
+        enter = hn::Max(enter, range.enter);
+        leave = hn::Min(leave, range.leave);
       }
       const Float far = hn::Load(kFloat, rays.z_far + first);
       if (HWY_UNLIKELY(rays.has_intervals))

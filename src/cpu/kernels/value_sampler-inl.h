@@ -37,8 +37,8 @@ HWY_INLINE T read_as(const std::byte* from) {
   return value;
 }
 
-/// The four bytes at `from + offset` of each lane. They are put into registers one by one: what is stored in parts and
-/// loaded as a whole keeps a processor waiting, and hardware gathers take longer.
+/// The four bytes at `from + offset` of each lane. Where we know how, they are put into registers one by one: what is
+/// stored in parts and loaded as a whole keeps a processor waiting, and hardware gathers take longer.
 HWY_INLINE Uint load_words(const std::byte* from, const PairOffsets& offset) {
   const auto read = [&](std::size_t i) { return read_as<std::uint32_t>(from + offset.lane[i]); };
 #if HWY_TARGET == HWY_SCALAR
@@ -110,7 +110,7 @@ class ValueSampler {
     origin_ = hn::Set(kUint, origin);
   }
 
-  /// The stored scalar at a place; of the nearest one inside the grid.
+  /// The scalar of the integrator at a place; of the nearest one inside the grid.
   HWY_INLINE Float eval(const Float at[3]) const {
     Float t[3];
     Uint first = hn::Zero(kUint);

@@ -13,7 +13,7 @@ struct Pause {  // what a ray needs to go on in another pass
   vec4 sum;
   float z;      // kNever: it has arrived
   uint has_met;
-  float sample_depth, sample_number;  // see `Carried`
+  float sample_depth, sample_number;  // see `Carried`; of runs, the number of the step taken last
   vec4 sample_value;
 };
 layout(std430, binding = 1) buffer Pauses { Pause pauses[]; };  // [rows][width]

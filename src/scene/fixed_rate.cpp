@@ -1,0 +1,84 @@
+#include "src/scene/fixed_rate.h"
+
+#include "src/grid/frame.h"
+#include "src/optics/slab_table.h"
+#include "src/scene/frame_renderer.h"
+
+#include <algorithm>
+
+namespace tetravox::scene {
+namespace {
+
+/// Kernels count steps and cells in floats, and bytes in 32 bits.
+constexpr double kMostSteps = 1 << 22;
+constexpr std::uint32_t kMostPoints = 1u << 22;
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 32;
+
+/// Of so many along the longest ray the length is known well enough to tell a whole slab from a part of one.
+constexpr double kMostSlabs = 1 << 13;
+
+/// Steps along the longest ray.
+double count_steps(const PreparedGrid& grid, double samples_per_voxel) {
+  return diagonal_of(grid.bounds) / grid::mean_spacing(grid::make_grid_frame(grid.data.shape)) * samples_per_voxel;
+}
+
+/// Whether kernels can read values where they lie.
+bool lie_in_place(const PreparedGrid& grid) {
+  const GridData& data = grid.data;
+  const auto& points = data.shape.dimensions;
+  const bool is_small =
+      data.values.size() <= kMostBytes && *std::max_element(points.begin(), points.end()) <= kMostPoints;
+  const bool is_scaled_only = grid.scalar_offset == 0.0 && grid.scalar_scale > 1e-30 && grid.scalar_scale < 1e30;
+  switch (data.type) {
+    case ScalarType::kInt8:
+    case ScalarType::kUint8:
+    case ScalarType::kInt16:
+    case ScalarType::kUint16:
+    case ScalarType::kFloat32:
+      return data.association == Association::kPoint && data.components == 1 && is_small && is_scaled_only;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+bool counts_steps(const PreparedGrid& grid, const RenderSettings& settings) {
+  const double rate = settings.samples_per_voxel;
+  return rate > 0.0 && settings.filter.kind == FilterKind::kLinear && restarts_rate(grid, settings.integrator) &&
+         lie_in_place(grid) && count_steps(grid, rate) <= kMostSteps;
+}
+
+bool may_look_slabs_up(const PreparedGrid& grid, const optics::SteepnessTable& steepness,
+                       const RenderSettings& settings) {
+  const ValueRange stored = stored_range(grid);
+  const float most = steepness.largest_steepness(static_cast<float>(stored.min), static_cast<float>(stored.max));
+  return settings.integrator == Integrator::kAntiderivative &&
+         count_steps(grid, settings.samples_per_voxel) <= kMostSlabs &&
+         optics::rounding_error(stored, most, diagonal_of(grid.bounds)) <= settings.tolerance;
+}
+
+ValueRange stored_range(const PreparedGrid& grid) {
+  const auto stored = [&](double value) { return (value - grid.scalar_offset) / grid.scalar_scale; };
+  return {stored(grid.scalar_range.min), stored(grid.scalar_range.max)};
+}
+
+std::vector<std::uint8_t> list_seen_spans(const std::array<std::uint32_t, 3>& counts,
+                                          std::span<const BrickPlan> plans) {
+  std::vector<std::uint8_t> spans(plans.size());
+  for (std::size_t i = 0; i < plans.size(); ++i) spans[i] = plans[i].level != BrickPlan::kTransparent;
+  // Spans with an axis are those without it, of the brick and of the next one along the axis.
+  std::size_t stride = 1;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const unsigned known = (1u << (1u << axis)) - 1u;
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+      const bool has_next = i / stride % counts[axis] + 1 < counts[axis];
+      const unsigned here = spans[i] & known, next = has_next ? spans[i + stride] & known : 0u;
+      spans[i] = static_cast<std::uint8_t>(here | (here | next) << (1u << axis));
+    }
+    stride *= counts[axis];
+  }
+  return spans;
+}
+
+}  // namespace tetravox::scene
