@@ -62,6 +62,15 @@ double parse_positive_number(const std::string& option, const std::string& text)
   return *value;
 }
 
+double parse_rate(const std::string& option, const std::string& text) {
+  constexpr double kLowestRate = 1e-3, kHighestRate = 64.0;
+  if (text == "auto") return 0.0;
+  const auto value = parse_finite(text);
+  if (!value || !(*value >= kLowestRate && *value <= kHighestRate))
+    refuse(option, text, "a number from 0.001 to 64, or auto");
+  return *value;
+}
+
 std::int64_t parse_integer(const std::string& option, const std::string& text, std::int64_t smallest,
                            std::int64_t largest) {
   const auto value = parse_whole<std::int64_t>(text);

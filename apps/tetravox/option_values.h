@@ -24,6 +24,8 @@ class UsageError : public std::runtime_error {
 /// A finite number.
 double parse_number(const std::string& option, const std::string& text);
 double parse_positive_number(const std::string& option, const std::string& text);
+/// Samples a voxel; 0 for "auto".
+double parse_rate(const std::string& option, const std::string& text);
 /// A whole number in [smallest, largest].
 std::int64_t parse_integer(const std::string& option, const std::string& text, std::int64_t smallest,
                            std::int64_t largest);

@@ -153,12 +153,9 @@ void add_method(CLI::App& app, RenderOptions& options) {
       store(method.classification, parse_classification));
   add(app, "--filter", "NAME", "How a grid's field is reconstructed (tetravox list methods; default: linear)",
       store(method.filter, named(filter_from_name)));
-  add(app, "--samples-per-voxel", "N", "Grids: fixed rate along rays, up to 64 (default: as the tolerance asks)",
-      [&method](const std::string& option, const std::string& text) {
-        method.samples_per_voxel = parse_positive_number(option, text);
-        if (*method.samples_per_voxel > kHighestRate)
-          throw UsageError(option + ": '" + text + "' is not a number above 0, at most 64");
-      });
+  add(app, "--samples-per-voxel", "N|auto",
+      "Grids: fixed rate along rays, 0.001 to 64 (default: auto, as the tolerance asks)",
+      store(method.samples_per_voxel, parse_rate));
   add(app, "--samples", "N", "Samples a segment of the integrator post, where no rate is fixed",
       store(method.samples, integer(1, kLargestSampleCount)));
   add(app, "--tolerance", "ERROR",

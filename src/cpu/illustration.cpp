@@ -233,7 +233,9 @@ void require_effects(const RenderSettings& settings, bool has_constant_cells) {
         "pre-classification goes with clipping, but not with light, iso-surfaces, weights or depth: choose another "
         "classification");
   if (settings.samples_per_voxel > 0.0)
-    fail("light, iso-surfaces, weights and depth follow the cells, not a fixed rate: leave out the samples per voxel");
+    fail(
+        "light, iso-surfaces, weights and depth follow the cells, not a fixed rate: set the samples per voxel to 0 "
+        "(--samples-per-voxel auto)");
   if (has_constant_cells && !settings.surfaces.empty())
     fail("iso-surfaces need a field that is continuous: choose point data, or another filter than 'nearest'");
 }

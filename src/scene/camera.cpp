@@ -60,7 +60,7 @@ void validate_camera(const Camera& camera) {
   if (!(length(camera.view_up) > 0.0) || !std::isfinite(length(camera.view_up)))
     fail("camera view_up has no length; give a direction, for example 0,0,1");
   if (length(cross(normalize(forward), normalize(camera.view_up))) < 1e-9)
-    fail("camera view_up is parallel to the line of sight; choose another direction");
+    fail("camera view_up is parallel to the line of sight: choose another direction (--camera-view-up)");
   if (camera.parallel_scale) {
     if (!std::isfinite(*camera.parallel_scale) || !(*camera.parallel_scale > 0.0))
       fail("camera parallel_scale must be above 0 (half the height of the picture, world units)");

@@ -55,7 +55,7 @@ struct Renderer::State {
 
 namespace {
 
-constexpr double kHighestRate = 64.0;  // samples a voxel
+constexpr double kLowestRate = 1e-3, kHighestRate = 64.0;  // samples a voxel
 
 void validate_settings(const RenderSettings& settings) {
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::kInvalidArgument, message); };
@@ -66,8 +66,9 @@ void validate_settings(const RenderSettings& settings) {
   if (settings.samples < 1 || settings.samples > 4096) fail("samples must be between 1 and 4096");
   if (!(settings.tolerance >= kSmallestTolerance && settings.tolerance <= 1.0))
     fail("tolerance must be between 1e-7 and 1");
-  if (!(settings.samples_per_voxel >= 0.0 && settings.samples_per_voxel <= kHighestRate))
-    fail("samples per voxel must be between 0 (as the tolerance asks) and 64");
+  const double rate = settings.samples_per_voxel;
+  if (!(rate == 0.0 || (rate >= kLowestRate && rate <= kHighestRate)))
+    fail("samples per voxel must be 0 (as the tolerance asks), or from 0.001 to 64");
   if (!(settings.opacity_weight_scale > 0.0)) fail("the scale of the opacity weight must be above 0");
   validate_preintegration(settings.preintegration);
   if (settings.integrator == Integrator::kTable3d && settings.preintegration.scalars > kLargestTableSize)

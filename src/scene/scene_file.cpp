@@ -21,7 +21,7 @@ constexpr int kLargestSampleCount = 4096;
 constexpr int kLargestComponentCount = 4;
 constexpr long long kLargestDimension = 0xFFFFFFFE;
 constexpr long long kLargestHeader = 1LL << 53;
-constexpr double kLargestRate = 64.0;  // samples per voxel
+constexpr double kSmallestRate = 1e-3, kLargestRate = 64.0;  // samples per voxel
 
 void read_time(const JsonPlace& place, TimeRequest& time) {
   place.require_keys({"index", "value"});
@@ -162,8 +162,8 @@ void read_render(const JsonPlace& place, RenderSettings& settings) {
     settings.samples = static_cast<int>(samples->integer(1, kLargestSampleCount));
   if (const auto rate = place.find("samples_per_voxel")) {
     settings.samples_per_voxel = rate->number();
-    if (!(settings.samples_per_voxel > 0.0 && settings.samples_per_voxel <= kLargestRate))
-      rate->fail("expected a number above 0, at most 64; leave it out for as many as the tolerance asks");
+    if (!(settings.samples_per_voxel >= kSmallestRate && settings.samples_per_voxel <= kLargestRate))
+      rate->fail("expected a number from 0.001 to 64; leave it out for as many as the tolerance asks");
   }
   if (const auto weight = place.find("opacity_weight"))
     settings.opacity_weight = at_place(*weight, [&] { return opacity_weight_from_name(weight->string()); });

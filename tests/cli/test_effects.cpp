@@ -291,9 +291,17 @@ TEST_F(Effects, SurfacesAloneAreKept) {
   EXPECT_NE(draw("c.npy", {"s.json", "--lights", "none"}), first);
 }
 
+TEST_F(Effects, APictureAtAFixedRateIsLitWithoutIt) {
+  draw("fast.png", {"builtin:hydrogen", "--samples-per-voxel", "1"});
+  draw("lit.npy", {"fast.png", "--shade", "--samples-per-voxel", "auto"});
+  draw("same.npy", {"builtin:hydrogen", "--shade"});
+  EXPECT_EQ(read("lit.npy"), read("same.npy"));
+}
+
 TEST_F(Effects, WhatDoesNotGoTogetherIsRefused) {
   expect_error(run({"render", "builtin:hydrogen", "--shade", "--classification", "pre"}), 1, {"pre-classification"});
-  expect_error(run({"render", "builtin:hydrogen", "--shade", "--samples-per-voxel", "1"}), 1, {"samples per voxel"});
+  expect_error(run({"render", "builtin:hydrogen", "--shade", "--samples-per-voxel", "1"}), 1,
+               {"samples per voxel", "--samples-per-voxel auto"});
   expect_error(run({"render", "builtin:duct?cells=3000", "--array", "volume", "--isosurface", "1"}), 1, {"point data"});
   expect_error(run({"render", "builtin:sphere", "--gradient", "central"}), 1, {"vertex"});
   expect_error(run({"render", "builtin:sphere", "--clip-volume", "builtin:sphere"}), 1, {"clip volume"});

@@ -103,7 +103,8 @@ TEST_F(Grids, OptionsOfTheOtherKindOfDataAreErrors) {
   write("s.json", R"({"tetravox":1,"data":{"file":"builtin:sphere"},"render":{"filter":"nearest"}})");
   expect_error(run({"render", "s.json"}), 1, {"render.filter", "is for grids"});
   expect_error(draw("a.png", {"--filter", "box"}), 2, {"--filter", "catmull-rom"});
-  expect_error(draw("a.png", {"--samples-per-voxel", "65"}), 2, {"--samples-per-voxel", "64"});
+  for (const char* rate : {"65", "0", "1e-300", "abc"})
+    expect_error(draw("a.png", {"--samples-per-voxel", rate}), 2, {"--samples-per-voxel", "0.001", "64", "auto"});
   EXPECT_EQ(names(), std::vector<std::string>{"s.json"});
 }
 
