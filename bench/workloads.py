@@ -93,12 +93,23 @@ class PeerRun:
         except Failed as error:
             self.fail(error)
 
+    def error(self, path, exact):
+        """Of its picture; None where there is no peer."""
+        if not self.peer:
+            return None
+        try:
+            self.peer.ask("image " + path)
+        except Failed as error:
+            self.fail(error)
+            return None
+        return difference(path, exact)
+
     def finish(self, path, exact, **own_times):
         """The result, with a ratio for each of the tool's times by their key: the median over the rounds, so that a
         slow moment counts for both or not at all."""
+        own_error = self.error(path, exact)
         if self.peer:
-            self.peer.ask("image " + path)
-            self.result.update(frame=statistics.median(self.times), error=difference(path, exact))
+            self.result.update(frame=statistics.median(self.times), error=own_error)
             for key, times in own_times.items():
                 self.result[key] = statistics.median(a / b for a, b in zip(self.times, times))
             self.peer.close()
