@@ -209,7 +209,7 @@ class PacketMarcher {
       begin[axis] = std::clamp(run.low[axis] + shift, std::ptrdiff_t{0}, last);
       end[axis] = std::clamp(run.high[axis] + shift + 1, std::ptrdiff_t{0}, last);
     }
-    constexpr std::ptrdiff_t kMostRows = 4 * kRays;  // more are farther apart than the rays can use
+    constexpr std::ptrdiff_t kMostRows = 16 * kRays;  // more are farther apart than the rays can use
     if ((end[1] - begin[1]) * (end[2] - begin[2]) > kMostRows) return;
     for (std::ptrdiff_t k = begin[2]; k <= end[2]; ++k)
       for (std::ptrdiff_t j = begin[1]; j <= end[1]; ++j)
