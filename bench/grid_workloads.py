@@ -55,16 +55,26 @@ class Method:
     """A way to draw the scene with the tool; collects its runs."""
 
     def __init__(self, name, *options):
-        self.picture, self.options, self.runs, self.result = name + ".npy", options, [], None
+        self.picture, self.options, self.runs = name + ".npy", options, []
+
+    def frame(self, tool, scene):
+        self.runs.append(tool.render(scene, *RESOLUTION, "--repeat", str(REPEATS), *self.options, output=self.picture))
+
+    def finish(self, tool, exact):
+        return summary(self.runs, tool.path(self.picture), exact)
+
+
+class OptionalMethod(Method):
+    """One that a build or a machine may lack: without runs then."""
 
     def frame(self, tool, scene):
         try:
-            self.runs.append(tool.render(scene, *RESOLUTION, "--repeat", str(REPEATS), *self.options, output=self.picture))
+            super().frame(tool, scene)
         except Failed as error:
-            self.result = skipped(error)
+            self.runs, self.lack = [], error
 
     def finish(self, tool, exact):
-        return self.result or summary(self.runs, tool.path(self.picture), exact)
+        return super().finish(tool, exact) if self.runs else skipped(self.lack)
 
 
 def compare(tool, display, scene, peer_scene, rounds):
@@ -72,10 +82,11 @@ def compare(tool, display, scene, peer_scene, rounds):
     tool.render(scene, *RESOLUTION, *EXACT, output="exact.npy")
     exact = np.load(tool.path("exact.npy"))
     peers = {name: PeerRun(display, name, peer_scene, exact.shape[0]) for name in GRID_PEERS}
-    rates = {name: find_rate(tool, scene, exact, peer.error(tool.path("peer.npy"), exact)) for name, peer in peers.items()}
+    rates = {name: find_rate(tool, scene, exact, peer.error(tool.path("peer.npy"), exact))
+             for name, peer in peers.items()}
     own = Method("picture")
     fast = {name: Method("fast-" + name, *at_rate(rate)) for name, rate in rates.items()}
-    opengl = Method("opengl", *at_rate(rates["gpu"]), "--backend", "gl")
+    opengl = OptionalMethod("opengl", *at_rate(rates["gpu"]), "--backend", "gl")
     for _ in range(rounds):
         for method in (own, *fast.values(), opengl):
             method.frame(tool, scene)

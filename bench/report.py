@@ -55,9 +55,9 @@ def own_row(names, own, ratios):
 def peer_row(names, peer, other, ratios):
     if "skipped" in other:
         return [*names, *skipped_row(other, peer, 6 + len(ratios))]
-    return [*names, f"VTK {other['vtk']} {peer}", seconds(other["frame"]), *(f"{other[key]:.1f}×" if key in other else "–" for key in ratios),
-            error(other["error"]), seconds(other["read"]), "– / " + seconds(other["first_frame"]),
-            megabytes(other["peak_rss"])]
+    return [*names, f"VTK {other['vtk']} {peer}", seconds(other["frame"]),
+            *(f"{other[key]:.1f}×" if key in other else "–" for key in ratios), error(other["error"]),
+            seconds(other["read"]), "– / " + seconds(other["first_frame"]), megabytes(other["peak_rss"])]
 
 
 def rendering_table(rows):

@@ -63,7 +63,6 @@ double parse_positive_number(const std::string& option, const std::string& text)
 }
 
 double parse_rate(const std::string& option, const std::string& text) {
-  constexpr double kLowestRate = 1e-3, kHighestRate = 64.0;
   if (text == "auto") return 0.0;
   const auto value = parse_finite(text);
   if (!value || !(*value >= kLowestRate && *value <= kHighestRate))

@@ -16,7 +16,6 @@ constexpr int kLargestRepeat = 1'000'000;
 constexpr int kLargestSampleCount = 4096;
 
 constexpr int kLargestComponentCount = 4;
-constexpr double kHighestRate = 64.0;  // samples per voxel
 constexpr std::int64_t kLargestHeader = std::int64_t{1} << 53;
 
 constexpr char kInputHelp[] =

@@ -56,7 +56,7 @@ struct SlicingSettings {
   SlicingKind kind = SlicingKind::kView3d;
   int slices = 0;  ///< along the diagonal of the grid, in [1, kMostSlices]; 0: as the rate says
   SlabShape slabs = SlabShape::kCurved;
-  double slices_per_voxel = 2.0;  ///< the rate: a mean distance of values, in (0, 64]
+  double slices_per_voxel = 2.0;  ///< the rate: a mean distance of values, in (0, kHighestRate]
 };
 
 /// What turns a segment into colour and opacity.
@@ -86,6 +86,7 @@ enum class EntryOrder {
 
 inline constexpr int kLargestResolution = 16384;
 inline constexpr double kSmallestTolerance = 1e-7;
+inline constexpr double kLowestRate = 1e-3, kHighestRate = 64.0;  ///< samples a voxel
 
 struct RenderSettings {
   int width = 512;  ///< pixels, in [1, kLargestResolution]
@@ -97,9 +98,10 @@ struct RenderSettings {
   PreintegrationSettings preintegration;  ///< tables of table3d, polynomial and cylindrical
   EntryOrder entry_order = EntryOrder::kLists;  ///< meshes, gl
   Filter filter;                                ///< how a grid's field is reconstructed
-  double samples_per_voxel = 0.0;  ///< grids: fixed rate along the ray, in (0, 64]; 0: as the tolerance asks
-  ProjectionSettings projection;   ///< of the sources kProject and kVicp
-  SlicingSettings slicing;         ///< of the source kSlices
+  /// Grids: fixed rate along the ray, from kLowestRate to kHighestRate; 0: as the tolerance asks.
+  double samples_per_voxel = 0.0;
+  ProjectionSettings projection;  ///< of the sources kProject and kVicp
+  SlicingSettings slicing;        ///< of the source kSlices
   Lighting lighting;
   std::vector<Isosurface> surfaces;
   Clipping clipping;

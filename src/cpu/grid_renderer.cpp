@@ -117,7 +117,7 @@ class GridRenderer final : public scene::FrameRenderer {
            (plans_.size() + group_plans_.size()) * sizeof(scene::BrickPlan) +
            (visible_.size() + field_.coefficients.size()) * sizeof(float) + frame_bytes_ +
            centroids_.sums.size() * sizeof(std::int32_t) + shadows_.bytes() + domain_.bytes() +
-           preintegration_.bytes() + slabs_.bytes() + seen_spans_.size();
+           preintegration_.bytes() + slabs_.bytes() + seen_spans_.size() + seen_groups_.size() * sizeof(std::uint32_t);
   }
 
   std::vector<Source> sources() const override { return {Source::kMarch}; }
@@ -175,7 +175,8 @@ class GridRenderer final : public scene::FrameRenderer {
   scene::BrickGroups groups_;
   std::vector<scene::BrickPlan> plans_, group_plans_;
   std::vector<std::uint32_t> visible_;
-  std::vector<std::uint8_t> seen_spans_;  // where steps are counted
+  std::vector<std::uint8_t> seen_spans_;    // where steps are counted,
+  std::vector<std::uint32_t> seen_groups_;  // and so
   std::uint64_t frame_bytes_ = 0;
 };
 
@@ -306,7 +307,11 @@ void GridRenderer::plan(const RenderSettings& settings) {
   plans_ = scene::plan_bricks(sources, wanted, group_plans_);
   visible_ = scene::list_drawn(sources, group_plans_, plans_);
   seen_spans_.clear();
-  if (scene::counts_steps(grid_, settings)) seen_spans_ = scene::list_seen_spans(grid_.bricks.counts, plans_);
+  seen_groups_.clear();
+  if (scene::counts_steps(grid_, settings)) {
+    seen_spans_ = scene::list_seen_spans(grid_.bricks.counts, plans_);
+    seen_groups_ = scene::list_seen_groups(plans_.size(), group_plans_);
+  }
   planned_for_ = wanted;
   is_planned_ = true;
 }
@@ -489,7 +494,6 @@ void GridRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   frame.view = scene::make_grid_view(drawn(), frame_, pass.camera, settings.width, settings.height);
   frame.rays = scene::make_rays(frame.view.camera, frame.view.world_per_local);
   attach_preintegration(preintegration_, tables);
-  frame.bins = bin_bricks(drawn(), frame_, visible_, frame.view);
   frame.grid = {&frame_, lattice_field(settings, kernels), plan_sources(settings), plans_};
   frame.others = domain_.make_fields(frame.grid.field);
   frame.marches = choose_kernels(kernels, settings, has_effects);
@@ -497,6 +501,7 @@ void GridRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   frame.job = make_job(settings, tables);
   frame.job.grid = &frame.rays.grid;
   if (!has_effects) frame.packets = make_packets(settings, kernels, frame.job);
+  frame.bins = bin_bricks(drawn(), frame_, frame.packets ? seen_groups_ : visible_, frame.view);
   if (has_effects) describe(settings, context, frame);
   if (has_effects) trace(settings, context, frame);
   frame.illustration.effects.record = pass.record;

@@ -18,6 +18,9 @@ namespace tetravox::gl {
 /// Texture units of the source `march`.
 inline constexpr GLuint kBrickUnit = 6, kPlaneUnit = 7, kSteepnessUnit = 8, kValueUnit = 9, kSquareUnit = 10;
 
+/// Of its uniform block.
+inline constexpr GLuint kMarchBinding = 2;
+
 /// A brick's plan as shaders have it (march.glsl): level, stride, flags. Steps are of the values themselves, which cost
 /// no more here than those of larger cells; what remains of levels is one cell for all of a constant brick.
 std::uint32_t pack_plan(scene::BrickPlan plan, bool has_missing);

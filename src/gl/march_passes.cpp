@@ -1,5 +1,6 @@
 #include "src/gl/march_passes.h"
 
+#include "src/gl/march_bricks.h"
 #include "src/gl/slabs.h"
 #include "src/support/threads.h"
 
@@ -10,7 +11,6 @@
 namespace tetravox::gl {
 namespace {
 
-constexpr GLuint kMarchBinding = 2;                       // uniform block
 constexpr GLuint kCounterBinding = 0, kPauseBinding = 1;  // storage blocks
 constexpr GLuint kPictureUnit = 0;                        // image
 

@@ -1,5 +1,6 @@
 #include "src/gl/slabs.h"
 
+#include "src/gl/march_bricks.h"
 #include "src/optics/slab_table.h"
 
 #include <span>
@@ -8,10 +9,9 @@ namespace tetravox::gl {
 namespace {
 
 constexpr int kNodes = optics::SlabTable::kNodes;
-constexpr GLuint kMarchBinding = 2;  // uniform block
-constexpr GLuint kFilledUnit = 1;    // image
-constexpr GLuint kSlabUnit = 4;      // of the picture as a texture
-constexpr GLuint kGroup = 8;         // invocations along a side
+constexpr GLuint kFilledUnit = 1;  // image
+constexpr GLuint kSlabUnit = 4;    // of the picture as a texture
+constexpr GLuint kGroup = 8;       // invocations along a side
 
 }  // namespace
 

@@ -81,4 +81,12 @@ std::vector<std::uint8_t> list_seen_spans(const std::array<std::uint32_t, 3>& co
   return spans;
 }
 
+std::vector<std::uint32_t> list_seen_groups(std::size_t brick_count, std::span<const BrickPlan> of_groups) {
+  std::vector<std::uint32_t> seen;
+  for (std::size_t group = 0; group < of_groups.size(); ++group)
+    if (of_groups[group].level != BrickPlan::kTransparent)
+      seen.push_back(static_cast<std::uint32_t>(brick_count + group));
+  return seen;
+}
+
 }  // namespace tetravox::scene

@@ -9,6 +9,7 @@
 #include "tetravox/render.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,5 +34,8 @@ ValueRange stored_range(const PreparedGrid& grid);
 /// [bricks] bit `span`: whether the brick is seen, or one of those up to one further along the axes whose bits are set
 /// in `span`.
 std::vector<std::uint8_t> list_seen_spans(const std::array<std::uint32_t, 3>& counts, std::span<const BrickPlan> plans);
+
+/// Groups that hold what is seen, numbered behind `brick_count` bricks (brick_groups.h).
+std::vector<std::uint32_t> list_seen_groups(std::size_t brick_count, std::span<const BrickPlan> of_groups);
 
 }  // namespace tetravox::scene

@@ -55,8 +55,6 @@ struct Renderer::State {
 
 namespace {
 
-constexpr double kLowestRate = 1e-3, kHighestRate = 64.0;  // samples a voxel
-
 void validate_settings(const RenderSettings& settings) {
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::kInvalidArgument, message); };
   const auto in_range = [](int size) { return size >= 1 && size <= kLargestResolution; };

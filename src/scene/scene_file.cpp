@@ -21,7 +21,6 @@ constexpr int kLargestSampleCount = 4096;
 constexpr int kLargestComponentCount = 4;
 constexpr long long kLargestDimension = 0xFFFFFFFE;
 constexpr long long kLargestHeader = 1LL << 53;
-constexpr double kSmallestRate = 1e-3, kLargestRate = 64.0;  // samples per voxel
 
 void read_time(const JsonPlace& place, TimeRequest& time) {
   place.require_keys({"index", "value"});
@@ -162,7 +161,7 @@ void read_render(const JsonPlace& place, RenderSettings& settings) {
     settings.samples = static_cast<int>(samples->integer(1, kLargestSampleCount));
   if (const auto rate = place.find("samples_per_voxel")) {
     settings.samples_per_voxel = rate->number();
-    if (!(settings.samples_per_voxel >= kSmallestRate && settings.samples_per_voxel <= kLargestRate))
+    if (!(settings.samples_per_voxel >= kLowestRate && settings.samples_per_voxel <= kHighestRate))
       rate->fail("expected a number from 0.001 to 64; leave it out for as many as the tolerance asks");
   }
   if (const auto weight = place.find("opacity_weight"))

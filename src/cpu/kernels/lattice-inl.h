@@ -236,9 +236,7 @@ struct CellCorners {
   /// The trilinear field at a depth.
   HWY_INLINE Float eval(const LatticeRays& rays, Float depth) const {
     const Float x = rays.place(0, depth), y = rays.place(1, depth), z = rays.place(2, depth);
-    const auto mix = [](Float t, Float a, Float b) { return multiply_add(t, hn::Sub(b, a), a); };
-    const auto mix_square = [&](const Record& r) { return mix(y, mix(x, r.x, r.y), mix(x, r.z, r.w)); };
-    return mix(z, mix_square(low), mix_square(high));
+    return mix(z, mix_square(low, x, y), mix_square(high, x, y));
   }
 
   HWY_INLINE Mask is_missing() const {

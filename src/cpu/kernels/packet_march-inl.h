@@ -10,6 +10,7 @@
 
 #include "src/cpu/kernels/kernels.h"
 #include "src/cpu/kernels/lattice-inl.h"
+#include "src/cpu/kernels/rays-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/value_sampler-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
@@ -117,14 +118,12 @@ class PacketMarcher {
     rays.leave = gather(tile.z_far);
     for (int axis = 0; axis < 3; ++axis) {
       const Float origin = gather(tile.origin[axis]), direction = gather(tile.direction[axis]);
-      const Float inverse = gather(tile.inverse[axis]);
-      const Float upper = constant(static_cast<float>(job_.values->dimensions[axis] - 1));
-      const Float a = hn::Mul(hn::Neg(origin), inverse), b = hn::Mul(hn::Sub(upper, origin), inverse);
-      const Mask parallel = hn::Lt(hn::Abs(direction), constant(kParallel));
-      const Mask is_in = hn::And(hn::Ge(origin, constant(0.0f)), hn::Le(origin, upper));
-      const Float far = hn::IfThenElse(is_in, never, hn::Neg(never));
-      rays.enter = hn::Max(rays.enter, hn::IfThenElse(parallel, hn::Neg(never), hn::Min(a, b)));
-      rays.leave = hn::Min(rays.leave, hn::IfThenElse(parallel, far, hn::Max(a, b)));
+      const Float lower = constant(0.0f), upper = constant(static_cast<float>(job_.values->dimensions[axis] - 1));
+      const Mask is_inside = hn::And(hn::Ge(origin, lower), hn::Le(origin, upper));
+      const AxisRange range =
+          heed_parallel(range_between(lower, upper, origin, gather(tile.inverse[axis])), direction, is_inside);
+      rays.enter = hn::Max(rays.enter, range.enter);
+      rays.leave = hn::Min(rays.leave, range.leave);
       rays.origin[axis] = origin;
       rays.direction[axis] = direction;
     }

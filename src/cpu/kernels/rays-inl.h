@@ -77,18 +77,28 @@ struct AxisRange {
   Float enter, leave;
 };
 
+HWY_INLINE AxisRange range_between(Float lower, Float upper, Float origin, Float inverse) {
+  const Float a = hn::Mul(hn::Sub(lower, origin), inverse), b = hn::Mul(hn::Sub(upper, origin), inverse);
+  return {hn::Min(a, b), hn::Max(a, b)};
+}
+
+/// Where a ray is parallel to the planes: all of it, where it `is_inside`, or nothing.
+HWY_INLINE AxisRange heed_parallel(const AxisRange& range, Float direction, Mask is_inside) {
+  const Float never = constant(kNever), always = constant(-kNever);
+  const Mask parallel = hn::Lt(hn::Abs(direction), constant(kParallel));
+  return {hn::IfThenElse(parallel, always, range.enter),
+          hn::IfThenElse(parallel, hn::IfThenElse(is_inside, never, always), range.leave)};
+}
+
 HWY_INLINE AxisRange clip_axis(const MarchRays& rays, const MarchBrick& brick, int axis, int first) {
   const Float origin = hn::Load(kFloat, rays.origin[axis] + first);
   const Float inverse = hn::Load(kFloat, rays.inverse[axis] + first);
   const Float lower = constant(brick.lower[axis]), upper = constant(brick.upper[axis]);
-  const Float a = hn::Mul(hn::Sub(lower, origin), inverse), b = hn::Mul(hn::Sub(upper, origin), inverse);
-  const AxisRange range{hn::Min(a, b), hn::Max(a, b)};
+  const AxisRange range = range_between(lower, upper, origin, inverse);
   if (HWY_LIKELY(!rays.has_parallel[axis])) return range;
-  const Float direction = hn::Load(kFloat, rays.direction[axis] + first);
-  const Mask parallel = hn::Lt(hn::Abs(direction), constant(kParallel));
   const Mask below_end = brick.is_last[axis] ? hn::Le(origin, upper) : hn::Lt(origin, upper);
-  const Float far = hn::IfThenElse(hn::And(hn::Ge(origin, lower), below_end), constant(kNever), constant(-kNever));
-  return {hn::IfThenElse(parallel, constant(-kNever), range.enter), hn::IfThenElse(parallel, far, range.leave)};
+  return heed_parallel(range, hn::Load(kFloat, rays.direction[axis] + first),
+                       hn::And(hn::Ge(origin, lower), below_end));
 }
 
 /// Rays that cross about as many cells travel together: a counting sort by that number.

@@ -27,7 +27,6 @@ class DensityCorners {
   HWY_INLINE Record eval(const LatticeRays& rays, Float depth) const {
     const Float x = rays.place(0, depth), y = rays.place(1, depth), z = rays.place(2, depth);
     const auto channel = [&](Float Record::*c) {
-      const auto mix = [](Float t, Float a, Float b) { return multiply_add(t, hn::Sub(b, a), a); };
       const auto edge = [&](int i) { return mix(x, corners_[i].*c, corners_[i + 1].*c); };
       return mix(z, mix(y, edge(0), edge(2)), mix(y, edge(4), edge(6)));
     };

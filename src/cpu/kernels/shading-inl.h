@@ -55,22 +55,20 @@ HWY_INLINE Float power_of_cosine(Float cosine, Float square, float exponent) {
 /// a homogeneous medium and the edge of a shadow are smooth (percentage closer filtering; Reeves, Salesin, Cook 1987).
 HWY_INLINE Float look_up_transmittance(const float* depths, const std::int32_t sizes[3], const Triple& place) {
   const LatticePlace at(sizes, place);
-  const auto mixed = [](Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); };
   const auto through = [&](Int i) {
     const Float near = hn::GatherIndex(kFloat, depths, i),
                 far = hn::GatherIndex(kFloat, depths, hn::Add(i, at.step[2]));
-    return exp_negative(hn::Max(mixed(at.t[2], near, far), constant(0.0f)));
+    return exp_negative(hn::Max(mix(at.t[2], near, far), constant(0.0f)));
   };
-  const auto edge = [&](Int i) { return mixed(at.t[0], through(i), through(hn::Add(i, at.step[0]))); };
-  return mixed(at.t[1], edge(at.node), edge(hn::Add(at.node, at.step[1])));
+  const auto edge = [&](Int i) { return mix(at.t[0], through(i), through(hn::Add(i, at.step[0]))); };
+  return mix(at.t[1], edge(at.node), edge(hn::Add(at.node, at.step[1])));
 }
 
 /// Four floats at each point of a lattice, trilinear in between, clamped outside.
 HWY_INLINE Record look_up_records(const float* records, const std::int32_t sizes[3], const Triple& place) {
   const LatticePlace at(sizes, place);
   const auto mixed = [](Float f, const Record& a, const Record& b) {
-    const auto channel = [&](Float p, Float q) { return multiply_add(f, hn::Sub(q, p), p); };
-    return Record{channel(a.x, b.x), channel(a.y, b.y), channel(a.z, b.z), channel(a.w, b.w)};
+    return Record{mix(f, a.x, b.x), mix(f, a.y, b.y), mix(f, a.z, b.z), mix(f, a.w, b.w)};
   };
   const auto load = [&](Int i) { return load_table_records(records, hn::BitCast(kUint, i)); };
   const auto edge = [&](Int i) { return mixed(at.t[0], load(i), load(hn::Add(i, at.step[0]))); };

@@ -23,12 +23,10 @@ namespace HWY_NAMESPACE {
 
 /// The derivative of a trilinear cell along the lattice's axes, at `t` in it.
 HWY_INLINE Triple find_slope(const Record& low, const Record& high, const Float t[3]) {
-  const auto mixed = [](Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); };
-  const auto along_x = [&](const Record& r) { return mixed(t[1], hn::Sub(r.y, r.x), hn::Sub(r.w, r.z)); };
-  const auto along_y = [&](const Record& r) { return hn::Sub(mixed(t[0], r.z, r.w), mixed(t[0], r.x, r.y)); };
-  const auto square = [&](const Record& r) { return mixed(t[1], mixed(t[0], r.x, r.y), mixed(t[0], r.z, r.w)); };
-  return {mixed(t[2], along_x(low), along_x(high)), mixed(t[2], along_y(low), along_y(high)),
-          hn::Sub(square(high), square(low))};
+  const auto along_x = [&](const Record& r) { return mix(t[1], hn::Sub(r.y, r.x), hn::Sub(r.w, r.z)); };
+  const auto along_y = [&](const Record& r) { return hn::Sub(mix(t[0], r.z, r.w), mix(t[0], r.x, r.y)); };
+  return {mix(t[2], along_x(low), along_x(high)), mix(t[2], along_y(low), along_y(high)),
+          hn::Sub(mix_square(high, t[0], t[1]), mix_square(low, t[0], t[1]))};
 }
 
 /// Gradients at the corners of a cell (MarchBrick::gradients), trilinear in between: `node` is its lower corner, `row`
@@ -61,8 +59,7 @@ class LatticeSampler {
     find_cell(at, cell, t);
     const Uint record = number_of(cell, row_, layer_);
     const Record low = load_table_records(records_, record), high = load_table_records(records_ + slice_, record);
-    const auto mix_square = [&](const Record& r) { return mixed(t[1], mixed(t[0], r.x, r.y), mixed(t[0], r.z, r.w)); };
-    return mixed(t[2], mix_square(low), mix_square(high));
+    return mix(t[2], mix_square(low, t[0], t[1]), mix_square(high, t[0], t[1]));
   }
 
   /// The derivative of the field along the lattice's axes.
@@ -83,8 +80,6 @@ class LatticeSampler {
   }
 
  private:
-  static HWY_INLINE Float mixed(Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); }
-
   HWY_INLINE void find_cell(const Float at[3], Float cell[3], Float t[3]) const {
     for (int axis = 0; axis < 3; ++axis) {
       const Float inside = hn::Min(hn::Max(at[axis], constant(0.0f)), constant(last_cell_[axis]));

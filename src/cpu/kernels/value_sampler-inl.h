@@ -123,7 +123,7 @@ class ValueSampler {
     }
     const PairOffsets offset(hn::Sub(first, origin_));
     const Float low = eval_square<false>(values_, offset, t), high = eval_square<true>(values_ + slice_, offset, t);
-    return hn::Mul(hn::Sub(mixed(t[2], low, high), offset_), inverse_scale_);
+    return hn::Mul(hn::Sub(mix(t[2], low, high), offset_), inverse_scale_);
   }
 
  private:
@@ -131,17 +131,14 @@ class ValueSampler {
   static constexpr float kInteger = 8388608.0f;
   static constexpr std::uint32_t kIntegerBits = 0x4B000000u;
 
-  static HWY_INLINE Float mixed(Float f, Float a, Float b) { return multiply_add(f, hn::Sub(b, a), a); }
-
   template <bool kIsUpper>
   HWY_INLINE Float eval_square(const std::byte* from, const PairOffsets& offset, const Float t[3]) const {
     if constexpr (sizeof(T) == 4) {
-      const Record r = load_float_squares(from, row_, offset);
-      return mixed(t[1], mixed(t[0], r.x, r.y), mixed(t[0], r.z, r.w));
+      return mix_square(load_float_squares(from, row_, offset), t[0], t[1]);
     } else {
       const Pair a = load_integers<T, kIsUpper>(from, offset, flip_);
       const Pair b = load_integers<T, kIsUpper>(from + row_, offset, flip_);
-      return mixed(t[1], mixed(t[0], a.first, a.second), mixed(t[0], b.first, b.second));
+      return mix_square({a.first, a.second, b.first, b.second}, t[0], t[1]);
     }
   }
 

@@ -42,6 +42,14 @@ HWY_INLINE Float constant(float value) { return hn::Set(kFloat, value); }
 /// Multiply, then add, each rounded: never fused, so that all instruction sets agree to the bit.
 HWY_INLINE Float multiply_add(Float a, Float b, Float c) { return hn::Add(hn::Mul(a, b), c); }
 
+/// From a to b.
+HWY_INLINE Float mix(Float t, Float a, Float b) { return multiply_add(t, hn::Sub(b, a), a); }
+
+/// Between the corners (0, 0), (1, 0), (0, 1), (1, 1) of a square.
+HWY_INLINE Float mix_square(const Record& corners, Float x, Float y) {
+  return mix(y, mix(x, corners.x, corners.y), mix(x, corners.z, corners.w));
+}
+
 /// The integer nearest to 0 <= x < 2^22, ties to even: the lowest bits of a sum. `hn::NearestInt` looks after larger
 /// numbers, too, in twice the instructions.
 HWY_INLINE Int round_small(Float x) {
