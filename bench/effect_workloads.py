@@ -14,6 +14,9 @@ from workloads import REPEATS, ROUNDS, PeerRun, frame_seconds, say, skipped
 DATASETS = {"bluntfin": workloads, "embryo": grid_workloads, "neghip": grid_workloads}
 RESOLUTION = ("--resolution", "512,512")
 MATERIAL = "0.3,0.7,0.3,32"  # what VTK's property is given, too
+SHADE = ("--lights", "headlight", "--material", MATERIAL)
+# As VTK samples: plain, and lit.
+AT_RATE, LIT_AT_RATE = "plain, 1 sample a voxel", "one headlight, 1 sample a voxel"
 
 
 def survey(tool, scene):
@@ -31,10 +34,9 @@ def variants(tool, scene):
     middle = [0.5 * (low + high) for low, high in bounds]
     plane = ",".join(str(x) for x in (*middle, 1, 0.4, 0.2))
     iso = str(values[0] + 0.3 * (values[1] - values[0]))
-    shade = ("--lights", "headlight", "--material", MATERIAL)
     return {
-        "one headlight": shade,
-        "one headlight, tolerance 0.01": (*shade, "--tolerance", "0.01"),
+        "one headlight": SHADE,
+        "one headlight, tolerance 0.01": (*SHADE, "--tolerance", "0.01"),
         "clipped by a plane": ("--clip-plane", plane),
         "an opaque iso-surface in it": ("--lights", "none", "--isosurface", iso + ":0.9,0.9,0.9"),
         "value by gradient": ("--variables", "gradient"),
@@ -47,9 +49,12 @@ def measure(tool, display, name, options):
     scene, peer_scene = module.prepare_scenes(tool, name, options)
     rounds = 1 if options.quick else ROUNDS
     asked = variants(tool, scene)
-    plain, times, peers = [], {variant: [] for variant in asked}, {}
+    bases, peers = {}, {}  # what variants are compared with instead of the plain frame; VTK's mappers
     if module is grid_workloads:
+        asked |= {AT_RATE: grid_workloads.at_rate(1.0), LIT_AT_RATE: (*grid_workloads.at_rate(1.0), *SHADE)}
+        bases = {LIT_AT_RATE: AT_RATE}
         peers = {peer: PeerRun(display, peer + ":shaded", peer_scene, 512) for peer in GRID_PEERS}
+    plain, times = [], {variant: [] for variant in asked}
     for _ in range(rounds):
         plain.append(tool.render(scene, *RESOLUTION, "--repeat", str(REPEATS)))
         for variant, extra in asked.items():
@@ -60,9 +65,10 @@ def measure(tool, display, name, options):
     row = {"plain": statistics.median(own), "variants": {}, "peers": {}}
     for variant, runs in times.items():
         seconds = frame_seconds(runs)
-        ratio = statistics.median(a / b for a, b in zip(seconds, own))
+        base = frame_seconds(times[bases[variant]]) if variant in bases else own
+        ratio = statistics.median(a / b for a, b in zip(seconds, base))
         row["variants"][variant] = {"frame": statistics.median(seconds), "ratio": ratio}
-    lit = frame_seconds(times["one headlight"])
+    lit = frame_seconds(times[LIT_AT_RATE if peers else "one headlight"])
     for peer, run in peers.items():
         row["peers"][peer] = run.finish(tool.path("peer.npy"), np.zeros((512, 512, 3)), ratio=lit)
     return row

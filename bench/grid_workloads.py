@@ -17,7 +17,7 @@ WORKLOADS = {
 RESOLUTION = ("--resolution", "512,512")
 # Beside the default (half an 8-bit step) as exact as a peer, which samples once a voxel: the coarsest of these rates at
 # which the picture errs no more than its own, neither at most nor on average.
-RATES = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.25, 1.6, 2.0)
+RATES = tuple(n / 20 for n in range(5, 21)) + (1.25, 1.6, 2.0)
 FAST_TOLERANCE = "0.1"
 EXACT = ("--integrator", "partial", "--tolerance", "1e-6", "--early-ray-termination", "off")
 # Points along each side of the turbulence, of type uint8; the last one is for memory.

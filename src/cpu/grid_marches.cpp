@@ -41,6 +41,14 @@ Marches choose_illustrated_marches(const Kernels& kernels, bool is_constant, Int
           kernels.illustrate_march_gentle_antiderivative, kernels.illustrate_stride_gentle_antiderivative};
 }
 
+PacketMarches choose_packet_marches(const Kernels& kernels, const RenderSettings& settings) {
+  const bool is_partial = settings.integrator == Integrator::kPartial;
+  if (settings.lighting.is_lit())
+    return {is_partial ? kernels.light_packets_partial : kernels.light_packets_antiderivative,
+            kernels.light_packets_slabs};
+  return {is_partial ? kernels.packets_partial : kernels.packets_antiderivative, kernels.packets_slabs};
+}
+
 Marches choose_domain_marches(const Kernels& kernels, bool is_constant, const Domain& domain) {
   const Kernels::OfDomain& set = choose_domain_kernels(kernels, domain);
   const Integrate march = is_constant ? set.march_cells : set.march;

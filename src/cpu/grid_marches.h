@@ -3,6 +3,7 @@
 /// The kernels that take rays through the bricks of a grid.
 
 #include "src/cpu/domain.h"
+#include "src/cpu/grid_packets.h"
 #include "src/cpu/kernels/kernels.h"
 #include "tetravox/render.h"
 
@@ -23,6 +24,12 @@ Marches choose_marches(const Kernels& kernels, bool is_constant, const RenderSet
 
 /// The same with light, surfaces, weights or depth.
 Marches choose_illustrated_marches(const Kernels& kernels, bool is_constant, Integrator integrator);
+
+/// Through a whole grid at a fixed rate: segments integrated one by one, or slabs looked up.
+struct PacketMarches {
+  GridPackets::March segments = nullptr, slabs = nullptr;
+};
+PacketMarches choose_packet_marches(const Kernels& kernels, const RenderSettings& settings);
 
 /// Of a function of several variables.
 Marches choose_domain_marches(const Kernels& kernels, bool is_constant, const Domain& domain);

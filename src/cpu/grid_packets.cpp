@@ -30,13 +30,15 @@ MarchValues describe_values(const PreparedGrid& grid) {
 }  // namespace
 
 const optics::SlabTable& SlabCache::prepare(const ValueRange& range, const IntegratorTables& tables,
-                                            const Kernels& kernels, float thickness) {
-  if (thickness == thickness_ && tables.tolerance == tolerance_) return table_;
+                                            const Kernels& kernels, float thickness, bool wants_centers) {
+  const bool has_centers = !wants_centers || !table_.centers.empty();
+  if (thickness == thickness_ && tables.tolerance == tolerance_ && has_centers) return table_;
   constexpr int kNodes = optics::SlabTable::kNodes;
   const auto width = static_cast<float>(optics::SlabTable::node_width(range));
   table_.first = static_cast<float>(range.min);
   table_.nodes_per_scalar = width > 0.0f ? 1.0f / width : 1.0f;
-  table_.entries.resize(static_cast<std::size_t>(kNodes) * kNodes);
+  table_.entries.resize(optics::SlabTable::kEntries);
+  table_.centers.resize(wants_centers ? optics::SlabTable::kEntries + optics::SlabTable::kCenterPadding : 0);
   support::parallel_chunks(kNodes, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t front = begin; front < end; ++front)
       kernels.fill_slabs({&tables, &table_, static_cast<int>(front), thickness});
@@ -54,6 +56,7 @@ GridPackets::GridPackets(const PreparedGrid& grid, std::span<const std::uint8_t>
   job_.sample_distance = job.sample_distance;
   job_.use_early_ray_termination = job.use_early_ray_termination;
   job_.negligible = job.negligible;
+  job_.grid = job.grid;
 }
 
 void GridPackets::use_slabs(const optics::SlabTable& slabs, March march) {
@@ -63,11 +66,14 @@ void GridPackets::use_slabs(const optics::SlabTable& slabs, March march) {
   // From stored scalars to nodes.
   values_.offset += slabs.first / values_.inverse_scale;
   values_.inverse_scale *= slabs.nodes_per_scalar;
+  job_.stored_per_scalar = 1.0f / slabs.nodes_per_scalar;
 }
 
-std::uint64_t GridPackets::draw(MarchRays& rays) const {
+std::uint64_t GridPackets::draw(MarchRays& rays, int column, int row) const {
   PacketJob job = job_;
   job.rays = &rays;
+  job.column = column;
+  job.row = row;
   job.values = &values_;
   job.tables = &tables_;
   job.seen_spans = seen_spans_.data();

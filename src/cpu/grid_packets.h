@@ -16,11 +16,12 @@ namespace tetravox::cpu {
 /// new function, after `invalidate`.
 class SlabCache {
  public:
-  static constexpr std::size_t kBytes = sizeof(float[4]) * optics::SlabTable::kNodes * optics::SlabTable::kNodes;
+  static constexpr std::size_t kBytes = (sizeof(float[4]) + 1) * optics::SlabTable::kEntries;
 
-  /// `range`: of the stored scalars. `tables`: those of the frame, of which the integrals are taken.
+  /// `range`: of the stored scalars. `tables`: those of the frame, of which the integrals are taken. `wants_centers`:
+  /// where slabs are seen is to be found, too (`tables.effects` is filled).
   const optics::SlabTable& prepare(const ValueRange& range, const IntegratorTables& tables, const Kernels& kernels,
-                                   float thickness);
+                                   float thickness, bool wants_centers);
   void invalidate() { thickness_ = 0.0f; }
   std::size_t bytes() const { return table_.bytes(); }
 
@@ -41,8 +42,11 @@ class GridPackets {
   /// Looks slabs up instead, by the kernel `march`.
   void use_slabs(const optics::SlabTable& slabs, March march);
 
-  /// Draws the rays of a tile; returns how many segments they had.
-  std::uint64_t draw(MarchRays& rays) const;
+  /// Where light asks for gradients: central differences, or those of the trilinear field.
+  void use_central_gradients(bool are_central) { job_.has_central_gradients = are_central; }
+
+  /// Draws the rays of the tile that has its corner in this pixel; returns how many segments they had.
+  std::uint64_t draw(MarchRays& rays, int column, int row) const;
 
  private:
   March march_;

@@ -149,7 +149,7 @@ class GridRenderer final : public scene::FrameRenderer {
   MarchJob make_job(const RenderSettings& settings, const IntegratorTables& tables) const;
   std::uint64_t draw_brick(const FrameParts& frame, const TilePlace& place, const BinnedBrick& binned,
                            Workspace& workspace) const;
-  std::uint64_t draw_packets(const FrameParts& frame, Workspace& workspace) const;
+  std::uint64_t draw_packets(const FrameParts& frame, const TilePlace& place, Workspace& workspace) const;
   std::uint64_t draw_bricks(const FrameParts& frame, const TilePlace& place, std::span<const BinnedBrick> bricks,
                             Workspace& workspace) const;
   TileCounts draw_tile(const FrameParts& frame, std::size_t tile, Workspace& workspace, Image& image) const;
@@ -241,6 +241,7 @@ void GridRenderer::trace(const RenderSettings& settings, const scene::FrameConte
   // Where nobody asks for gradients, larger cells will do.
   scene::PlanSettings plan = plan_settings(settings);
   plan.wants_gradients = settings.opacity_weight == OpacityWeight::kGradient;
+  plan.samples_per_voxel = 0.0;
   illustration.shadow_plans = scene::plan_bricks(frame.grid.sources, plan);
   PlannedGrid grid = frame.grid;
   grid.plans = illustration.shadow_plans;
@@ -333,11 +334,13 @@ MarchJob GridRenderer::make_job(const RenderSettings& settings, const Integrator
 std::optional<GridPackets> GridRenderer::make_packets(const RenderSettings& settings, const Kernels& kernels,
                                                       const MarchJob& job) {
   if (!scene::counts_steps(grid_, settings)) return {};
-  if (settings.integrator == Integrator::kPartial) return GridPackets(grid_, seen_spans_, kernels.packets_partial, job);
-  GridPackets packets(grid_, seen_spans_, kernels.packets_antiderivative, job);
+  const PacketMarches marches = choose_packet_marches(kernels, settings);
+  GridPackets packets(grid_, seen_spans_, marches.segments, job);
   if (scene::may_look_slabs_up(grid_, steepness_, settings))
-    packets.use_slabs(slabs_.prepare(scene::stored_range(grid_), *job.tables, kernels, job.sample_distance),
-                      kernels.packets_slabs);
+    packets.use_slabs(slabs_.prepare(scene::stored_range(grid_), *job.tables, kernels, job.sample_distance,
+                                     settings.lighting.is_lit()),
+                      marches.slabs);
+  packets.use_central_gradients(choose_gradients(settings) == GradientSource::kCentral);
   return packets;
 }
 
@@ -392,9 +395,9 @@ std::uint64_t GridRenderer::draw_bricks(const FrameParts& frame, const TilePlace
 }
 
 /// One interval of all rays after the other.
-std::uint64_t GridRenderer::draw_packets(const FrameParts& frame, Workspace& workspace) const {
+std::uint64_t GridRenderer::draw_packets(const FrameParts& frame, const TilePlace& place, Workspace& workspace) const {
   std::uint64_t segments = 0;
-  do segments += frame.packets->draw(*workspace.rays);
+  do segments += frame.packets->draw(*workspace.rays, place.column, place.row);
   while (workspace.rays->has_intervals && workspace.intervals.advance_all(*workspace.rays));
   return segments;
 }
@@ -411,8 +414,8 @@ TileCounts GridRenderer::draw_tile(const FrameParts& frame, std::size_t tile, Wo
   for (int axis = 0; axis < 3; ++axis) start.upper[axis] = frame_.plane(axis, drawn().data.shape.dimensions[axis] - 1);
   frame.kernels->start_march(start);
   if (frame.has_clipping) workspace.intervals.find(frame.clip, frame.rays.grid, column, row, *workspace.rays);
-  counts.segments =
-      frame.packets ? draw_packets(frame, workspace) : draw_bricks(frame, {column, row}, bricks, workspace);
+  counts.segments = frame.packets ? draw_packets(frame, {column, row}, workspace)
+                                  : draw_bricks(frame, {column, row}, bricks, workspace);
   const MarchRays& rays = *workspace.rays;
   for (int y = 0; y < std::min(kTileSize, image.height - row); ++y)
     for (int x = 0; x < std::min(kTileSize, image.width - column); ++x) {
@@ -444,7 +447,7 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
         "pre-classification does not go with the filter 'bspline-interpolating': choose 'bspline' or 'catmull-rom'");
   const bool has_effects = wants_effects(settings) || domain_.is_set();
   if (domain_.is_set()) require_domain_settings(domain_.domain(), settings);
-  if (has_effects) require_effects(settings, is_constant(settings));
+  if (has_effects) require_effects(settings, is_constant(settings), scene::counts_steps(grid_, settings));
   const support::Timer timer;
   prepare_filter(settings);
   prepare_preintegration(settings, context.progress);
@@ -500,9 +503,11 @@ void GridRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   frame.kernels = &kernels;
   frame.job = make_job(settings, tables);
   frame.job.grid = &frame.rays.grid;
-  if (!has_effects) frame.packets = make_packets(settings, kernels, frame.job);
-  frame.bins = bin_bricks(drawn(), frame_, frame.packets ? seen_groups_ : visible_, frame.view);
   if (has_effects) describe(settings, context, frame);
+  if (!pass.record) frame.packets = make_packets(settings, kernels, frame.job);
+  frame.bins = bin_bricks(drawn(), frame_, frame.packets ? seen_groups_ : visible_, frame.view);
+  // More steps share what one would be lit for.
+  if (frame.packets) frame.illustration.effects.faint /= static_cast<float>(std::max(1.0, settings.samples_per_voxel));
   if (has_effects) trace(settings, context, frame);
   frame.illustration.effects.record = pass.record;
   if (settings.wants_depth) frame.illustration.effects.depth = image.depth.data();

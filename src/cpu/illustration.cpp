@@ -133,6 +133,10 @@ std::string shadow_key(const RenderSettings& settings, const Lighting& lights, c
   return format_scene(scene) + std::to_string(sources.function) + ", " + std::to_string(sources.clip_volumes);
 }
 
+bool wants_more_than_light(const RenderSettings& settings) {
+  return !settings.surfaces.empty() || settings.wants_depth || settings.opacity_weight != OpacityWeight::kNone;
+}
+
 }  // namespace
 
 void ShadowCache::prepare(const RenderSettings& settings, const Sources& sources, const DrawDepths& draw,
@@ -218,24 +222,28 @@ Vector3 to_camera(const scene::CameraFrame& camera, const Vector3& direction) {
 }
 
 bool wants_effects(const RenderSettings& settings) {
-  return settings.lighting.is_lit() || !settings.surfaces.empty() || settings.wants_depth ||
-         settings.opacity_weight != OpacityWeight::kNone;
+  return settings.lighting.is_lit() || wants_more_than_light(settings);
 }
 
 bool wants_gradients(const RenderSettings& settings) {
   return settings.lighting.is_lit() || settings.opacity_weight == OpacityWeight::kGradient;
 }
 
-void require_effects(const RenderSettings& settings, bool has_constant_cells) {
+void require_effects(const RenderSettings& settings, bool has_constant_cells, bool counts_steps) {
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::kUnsupported, message); };
   if (settings.integrator == Integrator::kPre)
     fail(
         "pre-classification goes with clipping, but not with light, iso-surfaces, weights or depth: choose another "
         "classification");
-  if (settings.samples_per_voxel > 0.0)
+  if (settings.samples_per_voxel > 0.0 && wants_more_than_light(settings))
     fail(
-        "light, iso-surfaces, weights and depth follow the cells, not a fixed rate: set the samples per voxel to 0 "
+        "iso-surfaces, weights and depth follow the cells, not a fixed rate: set the samples per voxel to 0 "
         "(--samples-per-voxel auto)");
+  if (settings.samples_per_voxel > 0.0 && !counts_steps)
+    fail(
+        "light at a fixed rate needs exact integration (antiderivative, partial), the filter 'linear', and one value "
+        "of at most 16 bits or float32 at each point of a grid with even axes and no missing values: set the samples "
+        "per voxel to 0 (--samples-per-voxel auto)");
   if (has_constant_cells && !settings.surfaces.empty())
     fail("iso-surfaces need a field that is continuous: choose point data, or another filter than 'nearest'");
 }

@@ -59,8 +59,9 @@ bool wants_effects(const RenderSettings& settings);
 /// Whether these need gradients.
 bool wants_gradients(const RenderSettings& settings);
 
+/// `counts_steps`: whether rays take a fixed rate in packets, which goes with light (scene::counts_steps).
 /// @throws Error (kUnsupported) for settings that do not go together.
-void require_effects(const RenderSettings& settings, bool has_constant_cells);
+void require_effects(const RenderSettings& settings, bool has_constant_cells, bool counts_steps = false);
 
 /// Fills all but shadows, occlusion, depth and record.
 void illustrate(const RenderSettings& settings, const IllustratedFrame& frame, Illustration& illustration);

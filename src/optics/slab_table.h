@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace tetravox::optics {
@@ -19,8 +20,14 @@ struct SlabTable {
   float first = 0.0f;                         ///< stored scalar at node 0
   float nodes_per_scalar = 1.0f;              ///< node = (stored - first) * nodes_per_scalar
   std::vector<std::array<float, 4>> entries;  ///< [front][back]
+  /// Where between front and back the emission of a slab has its middle, 0 to `kBehind`; [front][back], or none.
+  std::vector<std::uint8_t> centers;
 
-  std::size_t bytes() const { return entries.size() * sizeof(entries[0]); }
+  static constexpr int kBehind = 255;
+  static constexpr std::size_t kEntries = std::size_t{kNodes} * kNodes;
+  static constexpr std::size_t kCenterPadding = 3;  ///< bytes behind the last one that kernels may touch
+
+  std::size_t bytes() const { return entries.size() * sizeof(entries[0]) + centers.size(); }
 };
 
 /// What a picture errs by at most where scalars are rounded to nodes: `steepness` is the largest

@@ -293,6 +293,7 @@ TEST_F(Effects, SurfacesAloneAreKept) {
 
 TEST_F(Effects, APictureAtAFixedRateIsLitWithoutIt) {
   draw("fast.png", {"builtin:hydrogen", "--samples-per-voxel", "1"});
+  EXPECT_NE(draw("fast-lit.npy", {"fast.png", "--shade"}), draw("fast.npy", {"fast.png"}));
   draw("lit.npy", {"fast.png", "--shade", "--samples-per-voxel", "auto"});
   draw("same.npy", {"builtin:hydrogen", "--shade"});
   EXPECT_EQ(read("lit.npy"), read("same.npy"));
@@ -300,8 +301,13 @@ TEST_F(Effects, APictureAtAFixedRateIsLitWithoutIt) {
 
 TEST_F(Effects, WhatDoesNotGoTogetherIsRefused) {
   expect_error(run({"render", "builtin:hydrogen", "--shade", "--classification", "pre"}), 1, {"pre-classification"});
-  expect_error(run({"render", "builtin:hydrogen", "--shade", "--samples-per-voxel", "1"}), 1,
-               {"samples per voxel", "--samples-per-voxel auto"});
+  const auto at_rate = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"render", "builtin:hydrogen", "--samples-per-voxel", "1"});
+    return run(options);
+  };
+  expect_error(at_rate({"--shade", "--filter", "bspline"}), 1, {"'linear'", "--samples-per-voxel auto"});
+  expect_error(at_rate({"--isosurface", "0.5"}), 1, {"iso-surfaces", "--samples-per-voxel auto"});
+  expect_error(at_rate({"--output-depth", "z.npy"}), 1, {"depth", "--samples-per-voxel auto"});
   expect_error(run({"render", "builtin:duct?cells=3000", "--array", "volume", "--isosurface", "1"}), 1, {"point data"});
   expect_error(run({"render", "builtin:sphere", "--gradient", "central"}), 1, {"vertex"});
   expect_error(run({"render", "builtin:sphere", "--clip-volume", "builtin:sphere"}), 1, {"clip volume"});

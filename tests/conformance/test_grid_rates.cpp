@@ -2,6 +2,7 @@
 
 #include "src/scene/fixed_rate.h"
 #include "tests/common/image_compare.h"
+#include "tests/conformance/grid_rates.h"
 #include "tests/conformance/grid_scenes.h"
 #include "tests/reference/grid_integrator.h"
 
@@ -35,26 +36,6 @@ TEST(GridRates, ConvergeToTheExactPicture) {
       }
     }
   }
-}
-
-RenderSettings at_rate(double rate, Integrator integrator, double tolerance = 2e-3) {
-  RenderSettings settings = tests::make_settings(integrator, 64, 48);
-  settings.samples_per_voxel = rate;
-  settings.tolerance = tolerance;
-  return settings;
-}
-
-/// Number types whose values rays read where they lie.
-constexpr ScalarType kInPlace[] = {ScalarType::kInt8, ScalarType::kUint8, ScalarType::kInt16, ScalarType::kUint16,
-                                   ScalarType::kFloat32};
-
-/// The same whole numbers from 0 to 100 in any type, over several bricks that are not whole.
-GridData make_numbers(ScalarType type) {
-  tests::GridOptions options;
-  options.dimensions = {23, 19, 17};
-  options.type = type;
-  const tests::Field field = tests::make_random_field(21, 3.0);
-  return make_grid(options, [&](const Vector3& p) { return std::round(100.0 * field(p)); });
 }
 
 TEST(GridRates, NumberTypesAreReadWhereTheyLie) {

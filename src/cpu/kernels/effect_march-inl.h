@@ -163,12 +163,11 @@ struct PassingRays {
   PassingRays(const MarchJob& job, int first) {
     const scene::RayGrid& grid = *job.grid;
     const Int ray = hn::LoadU(kInt, job.rays->met.ray + first);
-    static_assert(kTileSize == 32);
     const Int column = hn::Add(hn::And(ray, hn::Set(kInt, kTileSize - 1)), hn::Set(kInt, job.column));
     const Int row = hn::Add(hn::ShiftRight<5>(ray), hn::Set(kInt, job.row));
     hn::Store(hn::Add(hn::Mul(row, hn::Set(kInt, grid.width)), column), kInt, pixels);
-    view = {hn::GatherIndex(kFloat, grid.column_offset, column), hn::GatherIndex(kFloat, grid.column_slope, column),
-            hn::GatherIndex(kFloat, grid.row_offset, row), hn::GatherIndex(kFloat, grid.row_slope, row), pixels};
+    view = view_of_tile(grid, job.column, job.row, ray);
+    view.pixels = pixels;
     depth = hn::GatherIndex(kFloat, job.rays->depth, ray);
     z_left = hn::GatherIndex(kFloat, job.rays->z_left, ray);
     scalar_left = hn::GatherIndex(kFloat, job.rays->scalar_left, ray);

@@ -26,6 +26,7 @@ const std::vector<NamedKernels>& all_kernels() {
       made.push_back({hwy::TargetName(target), {}});
       add_walk_kernels(made.back().kernels);
       add_march_kernels(made.back().kernels);
+      add_packet_kernels(made.back().kernels);
       add_effect_kernels(made.back().kernels);
       add_table_kernels(made.back().kernels);
       add_domain_kernels(made.back().kernels);

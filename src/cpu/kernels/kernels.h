@@ -222,12 +222,17 @@ struct PacketJob {
   float sample_distance = 0.0f;  ///< world length
   bool use_early_ray_termination = true;
   float negligible = 0.0f;  ///< as in `MarchJob`
+  /// For light:
+  const scene::RayGrid* grid = nullptr;  ///< with the tile's corner
+  int column = 0, row = 0;
+  bool has_central_gradients = true;  ///< else those of the trilinear field
+  float stored_per_scalar = 1.0f;     ///< stored scalars, of one of the integrator
 };
 
 /// One row of a table of slabs.
 struct SlabJob {
   const IntegratorTables* tables = nullptr;
-  optics::SlabTable* table = nullptr;  ///< with room for its entries
+  optics::SlabTable* table = nullptr;  ///< with room for its entries, and for centers if they are to be found
   int front = 0;
   float thickness = 1.0f;  ///< world length
 };
@@ -277,6 +282,9 @@ struct Kernels {
   WalkStatistics (*illustrate_walk_partial)(const WalkJob& job) = nullptr;
   WalkStatistics (*illustrate_walk_post)(const WalkJob& job) = nullptr;
   WalkStatistics (*illustrate_walk_cells)(const WalkJob& job) = nullptr;
+  std::uint64_t (*light_packets_antiderivative)(const PacketJob& job) = nullptr;
+  std::uint64_t (*light_packets_partial)(const PacketJob& job) = nullptr;
+  std::uint64_t (*light_packets_slabs)(const PacketJob& job) = nullptr;
   std::uint64_t (*illustrate_march_antiderivative)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*illustrate_march_gentle_antiderivative)(const MarchJob& job, int count) = nullptr;
   std::uint64_t (*illustrate_stride_antiderivative)(const MarchJob& job, int count) = nullptr;

@@ -12,10 +12,8 @@
 #include "src/cpu/kernels/antiderivative-inl.h"
 #include "src/cpu/kernels/integrators-inl.h"
 #include "src/cpu/kernels/march-inl.h"
-#include "src/cpu/kernels/packet_march-inl.h"
 #include "src/cpu/kernels/rays-inl.h"
 #include "src/cpu/kernels/sample-inl.h"
-#include "src/cpu/kernels/slab-inl.h"
 #include "src/cpu/kernels/stride-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -37,18 +35,6 @@ std::uint64_t stride(const MarchJob& job, int count) {
   return Strider<Integrator>(job).run(count);
 }
 
-template <class Integrator>
-std::uint64_t march_packets(const PacketJob& job) {
-  switch (job.values->value_bytes) {
-    case 1:
-      return PacketMarcher<std::uint8_t, Integrator>(job).run();
-    case 2:
-      return PacketMarcher<std::uint16_t, Integrator>(job).run();
-    default:
-      return PacketMarcher<float, Integrator>(job).run();
-  }
-}
-
 void add_march(Kernels& kernels) {
   kernels.make_records = &make_records;
   kernels.start_march = &start_march;
@@ -62,10 +48,6 @@ void add_march(Kernels& kernels) {
   kernels.stride_partial = &stride<PartialIntegrator>;
   kernels.march_cells = &march_cells;
   kernels.march_densities = &march_densities;
-  kernels.packets_antiderivative = &march_packets<AntiderivativeIntegrator>;
-  kernels.packets_partial = &march_packets<PartialIntegrator>;
-  kernels.packets_slabs = &march_packets<SlabIntegrator>;
-  kernels.fill_slabs = &fill_slabs;
   kernels.sample_antiderivative = &sample<ScalarSampler<AntiderivativeIntegrator>>;
   kernels.sample_partial = &sample<ScalarSampler<PartialIntegrator>>;
   kernels.sample_post = &sample<ScalarSampler<CellIntegrator>>;

@@ -10,6 +10,7 @@
 
 #include "src/cpu/kernels/kernels.h"
 #include "src/cpu/kernels/lattice-inl.h"
+#include "src/cpu/kernels/packet_light-inl.h"
 #include "src/cpu/kernels/rays-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
 #include "src/cpu/kernels/value_sampler-inl.h"
@@ -21,6 +22,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
@@ -31,10 +33,11 @@ namespace HWY_NAMESPACE {
 /// All rays of a packet take the same numbers of samples, counted from depth 0 of the camera's frame: depth = number *
 /// distance, cut to where the ray lies in the grid. Of each run of `kRun` steps the packet asks once whether any brick
 /// on its way is seen.
-template <class T, class Integrator>
+template <class T, class Integrator, bool kIsLit>
 class PacketMarcher {
  public:
-  explicit PacketMarcher(const PacketJob& job) : job_(job), sampler_(*job.values), integrator_(*job.tables) {}
+  explicit PacketMarcher(const PacketJob& job)
+      : job_(job), sampler_(*job.values), integrator_(*job.tables), lit_steps_(job, integrator_) {}
 
   std::uint64_t run() {
     for (int row = 0; row < kTileSize; row += kRows)
@@ -48,7 +51,8 @@ class PacketMarcher {
 
   struct Rays {
     HWY_ALIGN std::int32_t index[kLanes];
-    Float origin[3], direction[3], world_per_z;
+    RayCourse course;
+    Float world_per_z;
     Float distance;      // depth from sample to sample
     Float enter, leave;  // depths between which the ray is drawn
     Float depth;         // so far
@@ -63,8 +67,12 @@ class PacketMarcher {
       return hn::Min(hn::Max(hn::Mul(constant(number), distance), enter), leave);
     }
     HWY_INLINE void place(Float z, Float to[3]) const {
-      for (int axis = 0; axis < 3; ++axis) to[axis] = multiply_add(direction[axis], z, origin[axis]);
+      for (int axis = 0; axis < 3; ++axis) to[axis] = multiply_add(course.direction[axis], z, course.origin[axis]);
     }
+  };
+
+  struct Unlit {
+    Unlit(const PacketJob&, const Integrator&) {}
   };
 
   static HWY_INLINE float smallest(Float values) { return hn::GetLane(hn::MinOfLanes(kFloat, values)); }
@@ -112,6 +120,7 @@ class PacketMarcher {
       rays.index[lane] = (row + ray / kColumns) * kTileSize + column + ray % kColumns;
     }
     const Int index = hn::Load(kInt, rays.index);
+    if constexpr (kIsLit) rays.course.view = view_of_tile(*job_.grid, job_.column, job_.row, index);
     const auto gather = [&](const float* from) { return hn::GatherIndex(kFloat, from, index); };
     const Float never = constant(kNever);
     rays.enter = gather(tile.z_near);
@@ -124,8 +133,8 @@ class PacketMarcher {
           heed_parallel(range_between(lower, upper, origin, gather(tile.inverse[axis])), direction, is_inside);
       rays.enter = hn::Max(rays.enter, range.enter);
       rays.leave = hn::Min(rays.leave, range.leave);
-      rays.origin[axis] = origin;
-      rays.direction[axis] = direction;
+      rays.course.origin[axis] = origin;
+      rays.course.direction[axis] = direction;
     }
     rays.world_per_z = load_table_records(tile.start, hn::BitCast(kUint, index)).w;
     rays.distance = hn::Div(constant(job_.sample_distance), hn::Max(rays.world_per_z, constant(1e-30f)));
@@ -223,6 +232,7 @@ class PacketMarcher {
     }
     Float depth = rays.depth, scalar = rays.scalar;
     Accumulated sum = rays.sum;
+    if constexpr (kIsLit) lit_steps_.clear();
     // Samples do not wait for each other: all of them first.
     HWY_ALIGN float backs[kRun * kLanes];
     for (int step = 0; step < kRun; ++step) {
@@ -235,10 +245,20 @@ class PacketMarcher {
       const Float back = hn::Load(kFloat, backs + step * kLanes), moved = hn::Sub(next, depth);
       const Mask moves = hn::Gt(moved, constant(0.0f));
       rays.taken = hn::Add(rays.taken, hn::IfThenElseZero(int_mask(moves), hn::Set(kInt, 1)));
-      integrator_.integrate({scalar, back, hn::Mul(moved, rays.world_per_z)}, rays.front, sum);
+      const Segments segment{scalar, back, hn::Mul(moved, rays.world_per_z)};
+      if constexpr (kIsLit) {
+        const Float zero = constant(0.0f), before = sum.transmittance;
+        Accumulated part{zero, zero, zero, before};
+        integrator_.integrate(segment, rays.front, part);
+        lit_steps_.add(segment, depth, next, part, before);
+        sum.transmittance = part.transmittance;
+      } else {
+        integrator_.integrate(segment, rays.front, sum);
+      }
       scalar = back;
       depth = next;
     }
+    if constexpr (kIsLit) lit_steps_.shine(rays.course, sum);
     rays.scalar = scalar;
     rays.depth = depth;
     rays.place(depth, rays.at);
@@ -270,6 +290,7 @@ class PacketMarcher {
   const PacketJob& job_;
   ValueSampler<T> sampler_;
   Integrator integrator_;
+  std::conditional_t<kIsLit, LitSteps<T, Integrator, kRun>, Unlit> lit_steps_;
   std::uint64_t segments_ = 0;
 };
 

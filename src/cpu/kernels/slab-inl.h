@@ -10,7 +10,12 @@
 #include "src/cpu/kernels/antiderivative-inl.h"
 #include "src/cpu/kernels/kernels.h"
 #include "src/cpu/kernels/segments-inl.h"
+#include "src/cpu/kernels/stretches-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
@@ -26,14 +31,22 @@ inline void fill_slabs(const SlabJob& job) {
   constexpr int kNodes = optics::SlabTable::kNodes;
   const AntiderivativeIntegrator integrator(*job.tables);
   const Float front = scalar_at(*job.table, constant(static_cast<float>(job.front)));
-  float* row = job.table->entries[static_cast<std::size_t>(job.front) * kNodes].data();
+  const std::size_t first = static_cast<std::size_t>(job.front) * kNodes;
+  float* row = job.table->entries[first].data();
   for (int back = 0; back < kNodes; back += static_cast<int>(kLanes)) {
     Accumulated sum{constant(0.0f), constant(0.0f), constant(0.0f), constant(1.0f)};
     auto at = integrator.front_at(front);
     const Float number = hn::Add(hn::Iota(kFloat, 0.0f), constant(static_cast<float>(back)));
-    integrator.integrate({front, scalar_at(*job.table, number), constant(job.thickness)}, at, sum);
+    const Segments slab{front, scalar_at(*job.table, number), constant(job.thickness)};
+    integrator.integrate(slab, at, sum);
     const Float alpha = hn::Sub(constant(1.0f), sum.transmittance);
     hn::StoreInterleaved4(sum.red, sum.green, sum.blue, alpha, kFloat, row + 4 * back);
+    if (job.table->centers.empty()) continue;
+    const Float center = find_emission(job.tables->effects->centroid, slab, alpha).center;
+    const Int rounded = hn::NearestInt(hn::Mul(center, constant(optics::SlabTable::kBehind)));
+    HWY_ALIGN std::int32_t centers[kLanes];
+    hn::Store(rounded, kInt, centers);
+    std::copy_n(centers, kLanes, job.table->centers.begin() + static_cast<std::ptrdiff_t>(first) + back);
   }
 }
 
@@ -50,6 +63,14 @@ class SlabIntegrator {
         entries_(table_.entries.data()),
         thin_(constant(kWhole * tables.slab_thickness)),
         precise_(tables) {}
+
+  /// Where a step is seen, from 0 in front to 1 behind.
+  HWY_INLINE Float find_center(Float front, Float back) const {
+    const Int index = hn::Add(row_of(round_small(front)), round_small(back));
+    const auto* centers = reinterpret_cast<const std::int32_t*>(table_.centers.data());
+    const Int center = hn::And(hn::GatherOffset(kInt, centers, index), hn::Set(kInt, optics::SlabTable::kBehind));
+    return hn::Mul(hn::ConvertTo(kFloat, center), constant(1.0f / optics::SlabTable::kBehind));
+  }
 
   HWY_INLINE Front front_at(Float node) const { return {row_of(round_small(node))}; }
 
