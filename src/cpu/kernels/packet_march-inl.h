@@ -13,6 +13,7 @@
 #include "src/cpu/kernels/packet_light-inl.h"
 #include "src/cpu/kernels/rays-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
+#include "src/cpu/kernels/slab-inl.h"
 #include "src/cpu/kernels/value_sampler-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 #include "tetravox/grid.h"
@@ -47,6 +48,7 @@ class PacketMarcher {
 
  private:
   static constexpr int kColumns = 4, kRows = 4, kRays = kColumns * kRows, kRun = 6;
+  static constexpr bool kRoundsScalars = std::is_integral_v<T> && std::is_same_v<Integrator, SlabIntegrator>;
   static constexpr int kVectors = kRays / static_cast<int>(kLanes);
 
   struct Rays {
@@ -174,7 +176,9 @@ class PacketMarcher {
       }
       if (job_.is_large) prefetch(run, packet[0].at);
       bool goes_on = false;
-      for (Rays& rays : packet) goes_on |= take_steps(rays, number, is_ready);
+      for (Rays& rays : packet)
+        goes_on |= is_whole(rays, number) ? take_steps<true>(rays, number, is_ready)
+                                          : take_steps<false>(rays, number, is_ready);
       if (!goes_on) break;
       is_ready = true;
     }
@@ -224,10 +228,25 @@ class PacketMarcher {
         __builtin_prefetch(v.values + k * v.slice_bytes + j * v.row_bytes + begin[0] * v.value_bytes);
   }
 
+  HWY_INLINE Float sample(const Float at[3]) const {
+    if constexpr (kRoundsScalars)
+      return sampler_.eval_rounded(at);
+    else
+      return sampler_.eval(at);
+  }
+
+  /// Whether no ray begins or ends in the run.
+  static HWY_INLINE bool is_whole(const Rays& rays, float number) {
+    const Float first = hn::Mul(constant(number), rays.distance);
+    const Float last = hn::Mul(constant(number + static_cast<float>(kRun)), rays.distance);
+    return hn::AllTrue(kFloat, hn::And(hn::Ge(first, rays.enter), hn::Le(last, rays.leave)));
+  }
+
   /// Takes a vector of rays on by `kRun` samples; returns whether any goes on.
+  template <bool kIsWhole>
   HWY_INLINE bool take_steps(Rays& rays, float number, bool is_ready) {
     if (!is_ready) {
-      rays.scalar = sampler_.eval(rays.at);
+      rays.scalar = sample(rays.at);
       rays.front = integrator_.front_at(rays.scalar);
     }
     Float depth = rays.depth, scalar = rays.scalar;
@@ -235,30 +254,37 @@ class PacketMarcher {
     if constexpr (kIsLit) lit_steps_.clear();
     // Samples do not wait for each other: all of them first.
     HWY_ALIGN float backs[kRun * kLanes];
+    const auto depth_after = [&](int step) {
+      const float next = number + static_cast<float>(step + 1);
+      return kIsWhole ? hn::Mul(constant(next), rays.distance) : rays.depth_at(next);
+    };
     for (int step = 0; step < kRun; ++step) {
       Float at[3];
-      rays.place(rays.depth_at(number + static_cast<float>(step + 1)), at);
-      hn::Store(sampler_.eval(at), kFloat, backs + step * kLanes);
+      rays.place(depth_after(step), at);
+      hn::Store(sample(at), kFloat, backs + step * kLanes);
     }
     for (int step = 0; step < kRun; ++step) {
-      const Float next = rays.depth_at(number + static_cast<float>(step + 1));
-      const Float back = hn::Load(kFloat, backs + step * kLanes), moved = hn::Sub(next, depth);
-      const Mask moves = hn::Gt(moved, constant(0.0f));
-      rays.taken = hn::Add(rays.taken, hn::IfThenElseZero(int_mask(moves), hn::Set(kInt, 1)));
+      const Float next = depth_after(step), back = hn::Load(kFloat, backs + step * kLanes);
+      const Float moved = hn::Sub(next, depth);
+      if constexpr (!kIsWhole) {
+        const Mask moves = hn::Gt(moved, constant(0.0f));
+        rays.taken = hn::Add(rays.taken, hn::IfThenElseZero(int_mask(moves), hn::Set(kInt, 1)));
+      }
       const Segments segment{scalar, back, hn::Mul(moved, rays.world_per_z)};
       if constexpr (kIsLit) {
         const Float zero = constant(0.0f), before = sum.transmittance;
         Accumulated part{zero, zero, zero, before};
-        integrator_.integrate(segment, rays.front, part);
+        integrate<kIsWhole>(segment, rays.front, part);
         lit_steps_.add(segment, depth, next, part, before);
         sum.transmittance = part.transmittance;
       } else {
-        integrator_.integrate(segment, rays.front, sum);
+        integrate<kIsWhole>(segment, rays.front, sum);
       }
       scalar = back;
       depth = next;
     }
     if constexpr (kIsLit) lit_steps_.shine(rays.course, sum);
+    if constexpr (kIsWhole) rays.taken = hn::Add(rays.taken, hn::Set(kInt, kRun));
     rays.scalar = scalar;
     rays.depth = depth;
     rays.place(depth, rays.at);
@@ -271,6 +297,14 @@ class PacketMarcher {
       ended = hn::Or(ended, settled);
     }
     return !hn::AllTrue(kFloat, ended);
+  }
+
+  template <bool kIsWhole>
+  HWY_INLINE void integrate(const Segments& segment, typename Integrator::Front& front, Accumulated& sum) const {
+    if constexpr (kIsWhole && requires { integrator_.add_whole(segment.scalar_back, front, sum); })
+      integrator_.add_whole(segment.scalar_back, front, sum);
+    else
+      integrator_.integrate(segment, front, sum);
   }
 
   void arrive(const Rays& rays) {

@@ -74,9 +74,13 @@ class SlabIntegrator {
 
   HWY_INLINE Front front_at(Float node) const { return {row_of(round_small(node))}; }
 
+  /// Whole slabs.
+  HWY_INLINE void add_whole(Float scalar_back, Front& front, Accumulated& sum) const {
+    add(look_up(scalar_back, front), sum.transmittance, sum);
+  }
+
   HWY_INLINE void integrate(const Segments& segment, Front& front, Accumulated& sum) const {
-    const Int node = round_small(segment.scalar_back);
-    const Record slab = load_table_records(entries_, hn::BitCast(kUint, hn::Add(front.row, node)));
+    const Record slab = look_up(segment.scalar_back, front);
     const Mask is_any = hn::Gt(segment.length, constant(0.0f));
     Float visible = hn::IfThenElseZero(is_any, sum.transmittance);
     const Mask is_thin = hn::And(is_any, hn::Lt(segment.length, thin_));
@@ -84,11 +88,7 @@ class SlabIntegrator {
       visible = hn::IfThenZeroElse(is_thin, visible);
       integrate_thin(segment, is_thin, sum);
     }
-    sum.red = multiply_add(visible, slab.x, sum.red);
-    sum.green = multiply_add(visible, slab.y, sum.green);
-    sum.blue = multiply_add(visible, slab.z, sum.blue);
-    sum.transmittance = hn::Sub(sum.transmittance, hn::Mul(visible, slab.w));
-    front = {row_of(node)};
+    add(slab, visible, sum);
   }
 
  private:
@@ -97,6 +97,20 @@ class SlabIntegrator {
 
   static_assert(optics::SlabTable::kNodes == 512);
   static HWY_INLINE Int row_of(Int node) { return hn::ShiftLeft<9>(node); }
+
+  /// The slabs from `front` to a scalar, which becomes `front`.
+  HWY_INLINE Record look_up(Float scalar_back, Front& front) const {
+    const Int node = round_small(scalar_back);
+    const Record slab = load_table_records(entries_, hn::BitCast(kUint, hn::Add(front.row, node)));
+    front = {row_of(node)};
+    return slab;
+  }
+  static HWY_INLINE void add(const Record& slab, Float visible, Accumulated& sum) {
+    sum.red = multiply_add(visible, slab.x, sum.red);
+    sum.green = multiply_add(visible, slab.y, sum.green);
+    sum.blue = multiply_add(visible, slab.z, sum.blue);
+    sum.transmittance = hn::Sub(sum.transmittance, hn::Mul(visible, slab.w));
+  }
 
   HWY_NOINLINE void integrate_thin(const Segments& segment, Mask is_thin, Accumulated& sum) const {
     const Float scalar_front = scalar_at(table_, segment.scalar_front);

@@ -105,6 +105,106 @@ HWY_INLINE Record load_quads(const std::byte* from, const PairOffsets& offset, U
   }
 }
 
+/// Weighs pairs of values in whole numbers: b of each pair (a, b) with `weight`, a with what `kMost` leaves of that.
+#if HWY_TARGET != HWY_SCALAR && HWY_ARCH_X86
+using Bytes = hn::Vec<hn::Repartition<std::uint8_t, UintTag>>;
+using Shorts = hn::Vec<hn::Repartition<std::int16_t, UintTag>>;
+
+/// The bytes `which` of each 16, `flip` turned over.
+HWY_INLINE Bytes repeat_bytes(Uint from, const std::uint8_t which[16], std::uint32_t flip) {
+  const hn::Repartition<std::uint8_t, UintTag> tag;
+  const Bytes repeated = hn::TableLookupBytes(hn::BitCast(tag, from), hn::LoadDup128(tag, which));
+  return hn::Xor(repeated, hn::BitCast(tag, hn::Set(kUint, flip)));
+}
+
+/// Two pairs of bytes a lane.
+class BytePairs {
+ public:
+  static constexpr int kMost = 255;
+
+  explicit BytePairs(Uint weight) {
+    alignas(16) static constexpr std::uint8_t kByte[16] = {0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12};
+    weights_ = repeat_bytes(weight, kByte, 0x00FF00FFu);
+  }
+  /// A pair of 16 bits a lane.
+  HWY_INLINE Uint eval(Uint pairs) const {
+#if HWY_TARGET == HWY_SSE4
+    return Uint{_mm_maddubs_epi16(weights_.raw, pairs.raw)};
+#elif HWY_TARGET == HWY_AVX2
+    return Uint{_mm256_maddubs_epi16(weights_.raw, pairs.raw)};
+#else
+    return Uint{_mm512_maddubs_epi16(weights_.raw, pairs.raw)};
+#endif
+  }
+
+ private:
+  Bytes weights_;
+};
+
+/// A pair of 16 bits a lane.
+class ShortPairs {
+ public:
+  static constexpr int kMost = 32767;
+
+  explicit ShortPairs(Uint weight) {
+    alignas(16) static constexpr std::uint8_t kShort[16] = {0, 1, 0, 1, 4, 5, 4, 5, 8, 9, 8, 9, 12, 13, 12, 13};
+    weights_ = hn::BitCast(hn::Repartition<std::int16_t, UintTag>(), repeat_bytes(weight, kShort, 0x00007FFFu));
+  }
+  HWY_INLINE Int eval(Uint pairs) const {
+#if HWY_TARGET == HWY_SSE4
+    return Int{_mm_madd_epi16(weights_.raw, pairs.raw)};
+#elif HWY_TARGET == HWY_AVX2
+    return Int{_mm256_madd_epi16(weights_.raw, pairs.raw)};
+#else
+    return Int{_mm512_madd_epi16(weights_.raw, pairs.raw)};
+#endif
+  }
+
+ private:
+  Shorts weights_;
+};
+
+/// The first two bytes of `low`, the last two of `high`.
+HWY_INLINE Uint join_halves(Uint low, Uint high) {
+  const hn::Repartition<std::int16_t, UintTag> shorts;
+  return hn::BitCast(kUint, hn::OddEven(hn::BitCast(shorts, high), hn::BitCast(shorts, low)));
+}
+#else
+template <class T, class Sum, int kLargest>
+class WholePairs {
+ public:
+  static constexpr int kMost = kLargest;
+
+  explicit WholePairs(Uint weight) { hn::Store(hn::And(weight, hn::Set(kUint, kMost)), kUint, weights_); }
+
+  HWY_INLINE hn::Vec<hn::Rebind<Sum, UintTag>> eval(Uint pairs) const {
+    constexpr int kBits = 8 * sizeof(T), kSumBits = 2 * kBits;
+    HWY_ALIGN std::uint32_t lanes[kLanes];
+    hn::Store(pairs, kUint, lanes);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const auto weight = static_cast<std::int32_t>(weights_[i]);
+      std::uint32_t sums = 0;
+      for (int bit = 0; bit < 32; bit += kSumBits) {
+        const auto a = static_cast<T>(lanes[i] >> bit), b = static_cast<T>(lanes[i] >> (bit + kBits));
+        const auto sum = static_cast<std::uint32_t>((kMost - weight) * a + weight * b);
+        sums |= (kSumBits == 32 ? sum : sum & 0xFFFFu) << bit;
+      }
+      lanes[i] = sums;
+    }
+    return hn::BitCast(hn::Rebind<Sum, UintTag>(), hn::Load(kUint, lanes));
+  }
+
+ private:
+  HWY_ALIGN std::uint32_t weights_[kLanes];
+};
+using BytePairs = WholePairs<std::int8_t, std::uint32_t, 255>;
+using ShortPairs = WholePairs<std::int16_t, std::int32_t, 32767>;
+
+HWY_INLINE Uint join_halves(Uint low, Uint high) {
+  return hn::Or(hn::And(low, hn::Set(kUint, 0xFFFFu)), hn::And(high, hn::Set(kUint, 0xFFFF0000u)));
+}
+#endif
+
 /// The trilinear field of a whole grid of values of type T.
 template <class T>
 class ValueSampler {
@@ -134,6 +234,39 @@ class ValueSampler {
     const Float low = mix_square(load_lower(offset), cell.t[0], cell.t[1]);
     const Float high = mix_square(load_upper(offset), cell.t[0], cell.t[1]);
     return hn::Mul(hn::Sub(mix(cell.t[2], low, high), offset_), inverse_scale_);
+  }
+
+  /// The same of integers, the place between two values rounded: of bytes to parts of 255 along x and of 32767 along z,
+  /// of 16 bits to parts of 32767 along x.
+  HWY_INLINE Float eval_rounded(const Float at[3]) const {
+    const Cell cell = find_cell(at);
+    const PairOffsets offset(cell.first);
+    const auto whole = [](Float part, int most) {
+      return hn::BitCast(kUint, multiply_add(part, constant(static_cast<float>(most)), constant(kInteger)));
+    };
+    const auto scalar = [&](Float sum, float parts, float middle) {
+      const Float value = multiply_add(sum, constant(1.0f / parts), constant(middle));
+      return hn::Mul(hn::Sub(value, offset_), inverse_scale_);
+    };
+    if constexpr (sizeof(T) == 1) {
+      const BytePairs by_x(whole(cell.t[0], BytePairs::kMost));
+      const ShortPairs by_z(whole(cell.t[2], ShortPairs::kMost));
+      const Uint sign = hn::Xor(flip_, hn::Set(kUint, 0x80808080u));
+      const auto row = [&](const std::byte* from) {
+        const Uint both = join_halves(load_words(from, offset), load_words(from + slice_ - 2, offset));
+        return hn::ConvertTo(kFloat, by_z.eval(by_x.eval(hn::Xor(both, sign))));
+      };
+      return scalar(mix(cell.t[1], row(values_), row(values_ + row_)), 255.0f * 32767.0f, 128.0f);
+    } else {
+      const ShortPairs by_x(whole(cell.t[0], ShortPairs::kMost));
+      const Uint sign = hn::Xor(flip_, hn::Set(kUint, 0x80008000u));
+      const auto row = [&](const std::byte* from) {
+        return hn::ConvertTo(kFloat, by_x.eval(hn::Xor(load_words(from, offset), sign)));
+      };
+      const Float low = mix(cell.t[1], row(values_), row(values_ + row_));
+      const Float high = mix(cell.t[1], row(values_ + slice_), row(values_ + slice_ + row_));
+      return scalar(mix(cell.t[2], low, high), 32767.0f, 32768.0f);
+    }
   }
 
   /// Its derivatives there, a value's distance each.
@@ -196,7 +329,8 @@ class ValueSampler {
       cell.index[axis] = hn::Floor(hn::Min(inside, last_cell_[axis]));
       cell.t[axis] = hn::Sub(inside, cell.index[axis]);
       const Uint bits = hn::BitCast(kUint, hn::Add(cell.index[axis], constant(kInteger)));
-      first = hn::Add(first, hn::Mul(bits, bytes_[axis]));
+      const bool is_byte = axis == 0 && sizeof(T) == 1;
+      first = hn::Add(first, is_byte ? bits : hn::Mul(bits, bytes_[axis]));
     }
     cell.first = hn::Sub(first, origin_);
     return cell;
