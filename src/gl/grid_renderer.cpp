@@ -91,6 +91,12 @@ class GridRenderer final : public scene::FrameRenderer {
              RenderStatistics& statistics);
   FilteredBricks filtered_bricks(const scene::PlanSources& sources, const RenderSettings& settings) const;
   MarchKind kind_of(const RenderSettings& settings) const;
+  /// Whether rays look slabs up, which rounds scalars anyway, and the device interpolates these well and fast: software
+  /// does so floats alone, and bytes to whole numbers.
+  bool wants_filter(const MarchKind& kind, const RenderSettings& settings) const {
+    return kind.has_runs && scene::may_look_slabs_up(grid_, steepness_, settings) &&
+           (device_->values.has_floats() || !context_->device().is_software);
+  }
   /// Where every fetch is a call, as of software, fewer and larger ones pay; hardware has caches and units for them.
   bool wants_squares(const RenderSettings& settings) const {
     return context_->device().is_software && !scene::wants_kernel(settings.filter) && !is_constant(settings) &&
@@ -120,7 +126,7 @@ std::uint64_t GridRenderer::missing_bytes(const RenderSettings& settings) const 
     const std::uint64_t texel = settings.integrator == Integrator::kPre ? 16 : 4;
     // Here and on the device.
     of_values = 2 * texel * std::min<std::uint64_t>(kNodes * grid_.bricks.count(), FilteredNodes::kMostTexels);
-  } else if (wants_squares(settings)) {
+  } else if (wants_squares(settings) && !wants_filter(kind_of(settings), settings)) {
     of_values = GridTexture::bytes_of_squares(device_->values.volume());
   }
   return estimate_render_memory(grid_.data, settings) + pixels * MarchPasses::kPauseBytes + of_values;
@@ -221,6 +227,7 @@ void GridRenderer::slice(const Camera& camera, const RenderSettings& settings, c
   require_sliceable(grid_, settings);
   const auto current = context_->make_current();
   Device& device = *device_;
+  device.values.volume().set_filter(GL_NEAREST);
   const grid::GridFrame frame = grid::make_grid_frame(grid_.data.shape);
   const scene::GridView view = scene::make_grid_view(grid_, frame, camera, settings.width, settings.height);
   device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);
@@ -239,7 +246,10 @@ void GridRenderer::march(const scene::GridView& view, const RenderSettings& sett
   MarchKind kind = kind_of(settings);
   kind.shader = takes_points(kind) ? device.tables.points() : device.tables.shader(settings);
   device.values.volume().bind(kValueUnit);
-  if (const Volume* squares = wants_squares(settings) ? device.values.squares(*context_) : nullptr) {
+  kind.is_filtered = wants_filter(kind, settings);
+  device.values.volume().set_filter(kind.is_filtered ? GL_LINEAR : GL_NEAREST);
+  const bool has_squares = !kind.is_filtered && wants_squares(settings);
+  if (const Volume* squares = has_squares ? device.values.squares(*context_) : nullptr) {
     squares->bind(kSquareUnit);
     kind.has_squares = true;
   }

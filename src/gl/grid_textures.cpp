@@ -74,8 +74,12 @@ void Volume::make(GLenum format, const std::array<int, 3>& size, const Context& 
   }
   for (const GLenum side : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
     glTextureParameteri(name, side, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  set_filter(GL_NEAREST);
+}
+
+void Volume::set_filter(GLenum filter) const {
+  for (const GLenum which : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTextureParameteri(texture_.get(), which, static_cast<GLint>(filter));
 }
 
 namespace {
@@ -152,7 +156,8 @@ GridTexture::GridTexture(const PreparedGrid& grid, const Context& context) : gri
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   for (int k = 0; k < size[2]; ++k)
     glTextureSubImage3D(volume_.get(), 0, 0, 0, k, size[0], size[1], 1, GL_RED, slices.type(), slices.read(k));
-  if (!slices.is_integer()) return;
+  has_floats_ = !slices.is_integer();
+  if (has_floats_) return;
   const double largest = is_byte ? 255.0 : 65535.0;
   const double lowest = is_signed(grid.data.type) ? (is_byte ? -128.0 : -32768.0) : 0.0;
   map_ = {static_cast<float>((lowest - grid.scalar_offset) / grid.scalar_scale),

@@ -18,6 +18,7 @@ class Volume {
   /// @throws Error (kUnsupported) where a side exceeds the device's limit, (kOutOfMemory) where it has no room.
   void make(GLenum format, const std::array<int, 3>& size, const Context& context);
   void bind(GLuint unit) const { glBindTextureUnit(unit, texture_.get()); }
+  void set_filter(GLenum filter) const;  ///< GL_NEAREST, as it is made, or GL_LINEAR
   GLuint get() const { return texture_.get(); }
   const std::array<int, 3>& size() const { return size_; }
   std::uint64_t bytes() const { return bytes_; }
@@ -51,6 +52,7 @@ class GridTexture {
   static std::uint64_t bytes_of_squares(const Volume& values) {
     return 4 * values.bytes() > kMostBytesOfSquares ? 0 : 4 * values.bytes();
   }
+  bool has_floats() const { return has_floats_; }
   const TexelMap& map() const { return map_; }
   std::uint64_t bytes() const { return volume_.bytes() + squares_.bytes(); }
 
@@ -60,6 +62,7 @@ class GridTexture {
   const PreparedGrid& grid_;
   Volume volume_, squares_;
   TexelMap map_;
+  bool has_floats_ = false;
   bool has_tried_squares_ = false;
 };
 

@@ -38,7 +38,7 @@ std::vector<IntegratorShader> run_shaders() {
 std::string key_of(const MarchKind& kind) {
   std::string key = name_of(kind.integrator) + " " + kind.shader.name;
   for (const bool flag : {kind.is_uneven, kind.is_constant, kind.is_nearest, kind.has_nodes, kind.has_squares,
-                          kind.has_samples, kind.has_runs, kind.has_strides, kind.has_cells})
+                          kind.is_filtered, kind.has_samples, kind.has_runs, kind.has_strides, kind.has_cells})
     key += flag ? '1' : '0';
   return key;
 }
@@ -53,12 +53,14 @@ ShaderRecipe recipe_of_march(const MarchKind& kind) {
   define(kind.is_uneven, "IS_UNEVEN");
   define(kind.is_nearest, "IS_NEAREST");
   define(kind.has_nodes, "HAS_NODES");
+  define(kind.is_filtered, "IS_FILTERED");
   define(kind.has_strides, "HAS_STRIDES");
   recipe.includes.emplace_back("marcher.glsl", marcher_file(kind));
   kind.shader.add_to(recipe);
   const char* nodes = "nodes_of_texture.glsl";
   if (kind.has_nodes) nodes = "nodes_of_buffer.glsl";
   if (kind.has_squares) nodes = "nodes_of_squares.glsl";
+  if (kind.is_filtered) nodes = "nodes_of_filter.glsl";
   recipe.includes.emplace_back("nodes.glsl", nodes);
   return recipe;
 }
@@ -127,6 +129,10 @@ std::vector<MarchKind> march_kinds() {
       kind.has_squares = has_squares;
       kinds.push_back(kind);
     }
+  MarchKind kind;
+  kind.shader = slab_shader();
+  kind.has_runs = kind.is_filtered = true;
+  kinds.push_back(kind);
   return kinds;
 }
 

@@ -28,6 +28,7 @@ struct MarchKind {
   bool is_nearest = false;   ///< of these: eighths of cells, each with the value of its corner
   bool has_nodes = false;    ///< lattices of filtered values instead of the grid's own
   bool has_squares = false;  ///< four values in each texel
+  bool is_filtered = false;  ///< the device interpolates values, of `has_runs`
   bool has_samples = false;  ///< a fixed rate, samples counted on from cell to cell
   bool has_runs = false;     ///< a fixed rate, steps counted on through the whole grid (scene::counts_steps)
   // Of scalars that are no such samples:

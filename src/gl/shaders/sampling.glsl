@@ -6,13 +6,17 @@ float mix_corners(vec4 low, vec4 high, vec3 t) {
   return mix(edge.x, edge.y, t.x);
 }
 
-// The field of an even lattice anywhere in it.
+// The field of an even lattice anywhere in it; where the device filters, of one that is the whole grid.
 float sample_lattice(Lattice l, float z) {
   vec3 at = l.origin + l.direction * z;
+#ifdef IS_FILTERED
+  return sample_values(at);
+#else
   ivec3 cell = ivec3(clamp(at, vec3(0.0), vec3(l.size - 1)));
   vec4 low, high;
   fetch_corners(l, cell, low, high);
   return mix_corners(low, high, at - vec3(cell));
+#endif
 }
 
 // Into how many steps a ray's way through a brick is cut.
