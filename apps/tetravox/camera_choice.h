@@ -8,7 +8,8 @@
 
 namespace tetravox::tool {
 
-/// `camera` with what the options give in its place, then turned and zoomed. @throws Error (kInvalidArgument).
+/// `camera` with what the options give in its place, then turned and zoomed. Where it looks along what is up and no
+/// option says what else is, y is. @throws Error (kInvalidArgument).
 Camera override_camera(const CameraOptions& options, Camera camera);
 
 }  // namespace tetravox::tool

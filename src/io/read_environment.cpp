@@ -81,6 +81,11 @@ Environment read_cube(const std::string& path, bool is_directory) {
 Environment read_environment(const std::string& path) {
   if (path.starts_with("builtin:")) return make_builtin_environment(path);
   std::error_code ignored;
+  if (!fs::exists(path, ignored))
+    for (const auto& [name, description] : builtin_environment_names())
+      if (path == name)
+        throw Error(ErrorCode::kFileNotFound,
+                    "there is no file '" + path + "': the embedded surroundings are 'builtin:" + path + "'");
   if (fs::is_directory(path, ignored)) return read_cube(path, true);
   if (path.find('*') != std::string::npos && !exists(path)) return read_cube(path, false);
   return read_equirectangular(path);

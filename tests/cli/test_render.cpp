@@ -131,6 +131,16 @@ TEST_F(Render, OptionsChangeThePicture) {
   }
 }
 
+TEST_F(Render, SeenFromStraightAboveYIsUp) {
+  const std::vector<std::string> above{"builtin:duct", "--camera-position", "0,0,9", "--camera-focal-point", "0,0,0"};
+  std::vector<std::string> as_map = above;
+  as_map.insert(as_map.end(), {"--camera-view-up", "0,1,0"});
+  EXPECT_EQ(draw(above), draw(as_map));
+  as_map.back() = "0,0,1";
+  as_map.insert(as_map.begin(), "render");
+  expect_error(run(as_map), 1, {"parallel to the line of sight"});
+}
+
 TEST_F(Render, SamePixelsForEveryThreadCountAndWithoutEarlyTermination) {
   const auto picture = draw({"builtin:duct"});
   EXPECT_EQ(draw({"builtin:duct", "--threads", "1"}), picture);

@@ -201,6 +201,8 @@ TEST(EnvironmentFiles, WhatIsWrongIsNamed) {
   expect_bad(ErrorCode::kFileNotFound, "none.png", "cannot open");
   expect_bad(ErrorCode::kFileNotFound, "none.exr", "cannot open");
   expect_bad(ErrorCode::kInvalidArgument, "a.jpg", "neither .png nor .exr");
+  expect_error(
+      ErrorCode::kFileNotFound, [] { read_environment("sky"); }, "'sky'", "'builtin:sky'");
   write_bytes(directory.path() / "text.png", "this is no picture");
   write_bytes(directory.path() / "text.exr", "this is no picture");
   write_bytes(directory.path() / "empty.exr", "");
