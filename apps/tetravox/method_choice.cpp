@@ -135,11 +135,13 @@ void check_rays(const MethodOptions& method, const RenderSettings& settings, Sou
               "the source " + name_of(source) + " draws all there is" +
                   (is_mesh ? ", unless it sorts segments (--sort exact)" : ""));
   // Slabs, the cells of a mesh and fixed rates are segments as they are, and only `antiderivative` looks at the
-  // tolerance inside. But rays through grids also end by it.
+  // tolerance inside. But rays through grids also end by it, and light falls on what it says is bright.
   const bool has_fixed_segments = source != Source::kMarch || settings.samples_per_voxel > 0.0;
   const bool ends_by_it = source == Source::kMarch && settings.use_early_ray_termination;
   unused.note(method.tolerance.has_value(),
-              settings.integrator == Integrator::kAntiderivative || !has_fixed_segments || ends_by_it, "--tolerance",
+              settings.integrator == Integrator::kAntiderivative || !has_fixed_segments || ends_by_it ||
+                  settings.lighting.is_lit(),
+              "--tolerance",
               "the integrator " + name_of(settings.integrator) +
                   (is_mesh                     ? " takes each cell as it is"
                    : source == Source::kSlices ? " takes slabs as they are"

@@ -2,6 +2,8 @@
 
 #include "src/support/threads.h"
 
+#include <limits>
+
 namespace tetravox::cpu {
 namespace {
 
@@ -16,9 +18,9 @@ MarchValues describe_values(const PreparedGrid& grid) {
   if (data.type == ScalarType::kInt8) {
     values.flip = 0x80808080u;
     values.offset = 128.0f;
-  } else if (data.type == ScalarType::kInt16) {
+  } else if (data.type == ScalarType::kUint16 && grid.scalar_range.max > std::numeric_limits<std::int16_t>::max()) {
     values.flip = 0x80008000u;
-    values.offset = 32768.0f;
+    values.offset = -32768.0f;
   }
   for (int axis = 0; axis < 3; ++axis) values.dimensions[axis] = static_cast<std::int32_t>(data.shape.dimensions[axis]);
   values.row_bytes = static_cast<std::ptrdiff_t>(values.dimensions[0]) * values.value_bytes;
@@ -38,7 +40,7 @@ const optics::SlabTable& SlabCache::prepare(const ValueRange& range, const Integ
   table_.first = static_cast<float>(range.min);
   table_.nodes_per_scalar = width > 0.0f ? 1.0f / width : 1.0f;
   table_.entries.resize(optics::SlabTable::kEntries);
-  table_.centers.resize(wants_centers ? optics::SlabTable::kEntries + optics::SlabTable::kCenterPadding : 0);
+  table_.centers.resize(wants_centers ? optics::SlabTable::kCenterBytes : 0);
   support::parallel_chunks(kNodes, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t front = begin; front < end; ++front)
       kernels.fill_slabs({&tables, &table_, static_cast<int>(front), thickness});

@@ -12,11 +12,12 @@
 
 namespace tetravox::cpu {
 
-/// Ray integrals of slabs as thick as two samples are apart, made again when distance or tolerance change; and for a
-/// new function, after `invalidate`.
+/// Ray integrals of slabs as thick as two samples are apart, made again when distance or tolerance change, when it is
+/// first asked where slabs are seen, and for a new function, after `invalidate`.
 class SlabCache {
  public:
-  static constexpr std::size_t kBytes = (sizeof(float[4]) + 1) * optics::SlabTable::kEntries;
+  static constexpr std::size_t kBytes =
+      sizeof(float[4]) * optics::SlabTable::kEntries + optics::SlabTable::kCenterBytes;
 
   /// `range`: of the stored scalars. `tables`: those of the frame, of which the integrals are taken. `wants_centers`:
   /// where slabs are seen is to be found, too (`tables.effects` is filled).
@@ -42,8 +43,12 @@ class GridPackets {
   /// Looks slabs up instead, by the kernel `march`.
   void use_slabs(const optics::SlabTable& slabs, March march);
 
-  /// Where light asks for gradients: central differences, or those of the trilinear field.
-  void use_central_gradients(bool are_central) { job_.has_central_gradients = are_central; }
+  /// What light asks for: central differences, or gradients of the trilinear field; and the opacity of a step that is
+  /// not worth one.
+  void use_light(bool has_central_gradients, float faint) {
+    job_.has_central_gradients = has_central_gradients;
+    job_.faint = faint;
+  }
 
   /// Draws the rays of the tile that has its corner in this pixel; returns how many segments they had.
   std::uint64_t draw(MarchRays& rays, int column, int row) const;

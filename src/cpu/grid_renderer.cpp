@@ -340,7 +340,11 @@ std::optional<GridPackets> GridRenderer::make_packets(const RenderSettings& sett
     packets.use_slabs(slabs_.prepare(scene::stored_range(grid_), *job.tables, kernels, job.sample_distance,
                                      settings.lighting.is_lit()),
                       marches.slabs);
-  packets.use_central_gradients(choose_gradients(settings) == GradientSource::kCentral);
+  if (settings.lighting.is_lit()) {
+    // What is too faint for a normal in a voxel is so in all steps through it.
+    const auto steps = static_cast<float>(std::max(1.0, settings.samples_per_voxel));
+    packets.use_light(choose_gradients(settings) == GradientSource::kCentral, job.tables->effects->faint / steps);
+  }
   return packets;
 }
 
@@ -447,7 +451,8 @@ void GridRenderer::render(const Camera& camera, const RenderSettings& settings, 
         "pre-classification does not go with the filter 'bspline-interpolating': choose 'bspline' or 'catmull-rom'");
   const bool has_effects = wants_effects(settings) || domain_.is_set();
   if (domain_.is_set()) require_domain_settings(domain_.domain(), settings);
-  if (has_effects) require_effects(settings, is_constant(settings), scene::counts_steps(grid_, settings));
+  if (has_effects) require_effects(settings, is_constant(settings));
+  if (has_effects) require_rate_effects(grid_, settings);
   const support::Timer timer;
   prepare_filter(settings);
   prepare_preintegration(settings, context.progress);
@@ -504,10 +509,8 @@ void GridRenderer::draw(const Pass& pass, const scene::FrameContext& context, Im
   frame.job = make_job(settings, tables);
   frame.job.grid = &frame.rays.grid;
   if (has_effects) describe(settings, context, frame);
-  if (!pass.record) frame.packets = make_packets(settings, kernels, frame.job);
+  frame.packets = make_packets(settings, kernels, frame.job);
   frame.bins = bin_bricks(drawn(), frame_, frame.packets ? seen_groups_ : visible_, frame.view);
-  // More steps share what one would be lit for.
-  if (frame.packets) frame.illustration.effects.faint /= static_cast<float>(std::max(1.0, settings.samples_per_voxel));
   if (has_effects) trace(settings, context, frame);
   frame.illustration.effects.record = pass.record;
   if (settings.wants_depth) frame.illustration.effects.depth = image.depth.data();

@@ -1,5 +1,6 @@
 #include "src/cpu/illustration.h"
 
+#include "src/scene/fixed_rate.h"
 #include "tetravox/error.h"
 #include "tetravox/scene.h"
 
@@ -128,6 +129,7 @@ std::string shadow_key(const RenderSettings& settings, const Lighting& lights, c
   Scene scene;
   scene.settings = settings;
   scene.settings.width = scene.settings.height = 1;
+  scene.settings.samples_per_voxel = 0.0;  // as lights draw
   scene.settings.lighting = lights;
   if (follows_eye) scene.camera = sources.eye;
   return format_scene(scene) + std::to_string(sources.function) + ", " + std::to_string(sources.clip_volumes);
@@ -229,23 +231,24 @@ bool wants_gradients(const RenderSettings& settings) {
   return settings.lighting.is_lit() || settings.opacity_weight == OpacityWeight::kGradient;
 }
 
-void require_effects(const RenderSettings& settings, bool has_constant_cells, bool counts_steps) {
+void require_effects(const RenderSettings& settings, bool has_constant_cells) {
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::kUnsupported, message); };
   if (settings.integrator == Integrator::kPre)
     fail(
         "pre-classification goes with clipping, but not with light, iso-surfaces, weights or depth: choose another "
         "classification");
-  if (settings.samples_per_voxel > 0.0 && wants_more_than_light(settings))
-    fail(
-        "iso-surfaces, weights and depth follow the cells, not a fixed rate: set the samples per voxel to 0 "
-        "(--samples-per-voxel auto)");
-  if (settings.samples_per_voxel > 0.0 && !counts_steps)
-    fail(
-        "light at a fixed rate needs exact integration (antiderivative, partial), the filter 'linear', and one value "
-        "of at most 16 bits or float32 at each point of a grid with even axes and no missing values: set the samples "
-        "per voxel to 0 (--samples-per-voxel auto)");
   if (has_constant_cells && !settings.surfaces.empty())
     fail("iso-surfaces need a field that is continuous: choose point data, or another filter than 'nearest'");
+}
+
+void require_rate_effects(const PreparedGrid& grid, const RenderSettings& settings) {
+  if (settings.samples_per_voxel == 0.0) return;
+  const auto fail = [](const std::string& message) {
+    throw Error(ErrorCode::kUnsupported, message + ": set the samples per voxel to 0 (--samples-per-voxel auto)");
+  };
+  if (wants_more_than_light(settings)) fail("iso-surfaces, weights and depth follow the cells, not a fixed rate");
+  const std::string obstacle = scene::find_obstacle_to_counting(grid, settings);
+  if (!obstacle.empty()) fail("light at a fixed rate needs " + obstacle);
 }
 
 void illustrate(const RenderSettings& settings, const IllustratedFrame& frame, Illustration& illustration) {

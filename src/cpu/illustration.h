@@ -59,9 +59,11 @@ bool wants_effects(const RenderSettings& settings);
 /// Whether these need gradients.
 bool wants_gradients(const RenderSettings& settings);
 
-/// `counts_steps`: whether rays take a fixed rate in packets, which goes with light (scene::counts_steps).
 /// @throws Error (kUnsupported) for settings that do not go together.
-void require_effects(const RenderSettings& settings, bool has_constant_cells, bool counts_steps = false);
+void require_effects(const RenderSettings& settings, bool has_constant_cells);
+
+/// @throws Error (kUnsupported) where they do not go with a fixed rate through this grid, if there is one.
+void require_rate_effects(const PreparedGrid& grid, const RenderSettings& settings);
 
 /// Fills all but shadows, occlusion, depth and record.
 void illustrate(const RenderSettings& settings, const IllustratedFrame& frame, Illustration& illustration);

@@ -147,7 +147,7 @@ LightDepths draw_light(const Camera& camera, int size, const RenderSettings& set
   pass.settings.lighting = {};
   pass.settings.lighting.gradient = settings.lighting.gradient;  // weights and functions may depend on it
   pass.settings.wants_depth = false;
-  pass.settings.samples_per_voxel = 0.0;  // depths are exact
+  pass.settings.samples_per_voxel = 0.0;  // rays that go from cell to cell note depths on their way
   pass.settings.use_early_ray_termination = false;
   Image unseen{size, size, std::vector<float>(4 * static_cast<std::size_t>(size) * size)};
   draw(pass, unseen);

@@ -91,8 +91,8 @@ class GridRenderer final : public scene::FrameRenderer {
              RenderStatistics& statistics);
   FilteredBricks filtered_bricks(const scene::PlanSources& sources, const RenderSettings& settings) const;
   MarchKind kind_of(const RenderSettings& settings) const;
-  /// Whether rays look slabs up, which rounds scalars anyway, and the device interpolates these well and fast: software
-  /// does so floats alone, and bytes to whole numbers.
+  /// Whether the device is to interpolate values: where rays look slabs up, which rounds scalars anyway. Software
+  /// filters floats well, but rounds filtered integers to whole numbers.
   bool wants_filter(const MarchKind& kind, const RenderSettings& settings) const {
     return kind.has_runs && scene::may_look_slabs_up(grid_, steepness_, settings) &&
            (device_->values.has_floats() || !context_->device().is_software);
@@ -227,7 +227,6 @@ void GridRenderer::slice(const Camera& camera, const RenderSettings& settings, c
   require_sliceable(grid_, settings);
   const auto current = context_->make_current();
   Device& device = *device_;
-  device.values.volume().set_filter(GL_NEAREST);
   const grid::GridFrame frame = grid::make_grid_frame(grid_.data.shape);
   const scene::GridView view = scene::make_grid_view(grid_, frame, camera, settings.width, settings.height);
   device.frame.begin(context_->limits(), view.camera, view.world_per_local, settings);
@@ -247,7 +246,6 @@ void GridRenderer::march(const scene::GridView& view, const RenderSettings& sett
   kind.shader = takes_points(kind) ? device.tables.points() : device.tables.shader(settings);
   device.values.volume().bind(kValueUnit);
   kind.is_filtered = wants_filter(kind, settings);
-  device.values.volume().set_filter(kind.is_filtered ? GL_LINEAR : GL_NEAREST);
   const bool has_squares = !kind.is_filtered && wants_squares(settings);
   if (const Volume* squares = has_squares ? device.values.squares(*context_) : nullptr) {
     squares->bind(kSquareUnit);

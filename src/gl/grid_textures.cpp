@@ -74,12 +74,8 @@ void Volume::make(GLenum format, const std::array<int, 3>& size, const Context& 
   }
   for (const GLenum side : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
     glTextureParameteri(name, side, GL_CLAMP_TO_EDGE);
-  set_filter(GL_NEAREST);
-}
-
-void Volume::set_filter(GLenum filter) const {
-  for (const GLenum which : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    glTextureParameteri(texture_.get(), which, static_cast<GLint>(filter));
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
 namespace {
@@ -153,6 +149,9 @@ GridTexture::GridTexture(const PreparedGrid& grid, const Context& context) : gri
   const auto& size = slices.size();
   const bool is_byte = slices.texel_bytes() == 1;
   volume_.make(!slices.is_integer() ? GL_R32F : is_byte ? GL_R8 : GL_R16, size, context);
+  // For who asks for filtered texels; all others fetch them.
+  glTextureParameteri(volume_.get(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(volume_.get(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   for (int k = 0; k < size[2]; ++k)
     glTextureSubImage3D(volume_.get(), 0, 0, 0, k, size[0], size[1], 1, GL_RED, slices.type(), slices.read(k));

@@ -18,7 +18,6 @@ class Volume {
   /// @throws Error (kUnsupported) where a side exceeds the device's limit, (kOutOfMemory) where it has no room.
   void make(GLenum format, const std::array<int, 3>& size, const Context& context);
   void bind(GLuint unit) const { glBindTextureUnit(unit, texture_.get()); }
-  void set_filter(GLenum filter) const;  ///< GL_NEAREST, as it is made, or GL_LINEAR
   GLuint get() const { return texture_.get(); }
   const std::array<int, 3>& size() const { return size_; }
   std::uint64_t bytes() const { return bytes_; }

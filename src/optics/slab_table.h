@@ -25,15 +25,16 @@ struct SlabTable {
 
   static constexpr int kBehind = 255;
   static constexpr std::size_t kEntries = std::size_t{kNodes} * kNodes;
-  static constexpr std::size_t kCenterPadding = 3;  ///< bytes behind the last one that kernels may touch
+  static constexpr std::size_t kCenterBytes = kEntries + 3;  ///< with those behind the last one that kernels may touch
 
   std::size_t bytes() const { return entries.size() * sizeof(entries[0]) + centers.size(); }
 };
 
 /// What a picture errs by at most where scalars are rounded to nodes: `steepness` is the largest
 /// change of density with the scalar, `longest` the world length of the longest ray. Scalars on both sides of their
-/// nodes cancel out: measured, it is a hundredth at most of what it would be if all of the longest ray were half a node
-/// off, to the same side, where the function is steepest. Three times that.
+/// nodes cancel out: measured, a picture errs by no more than 2.6 hundredths of what it would if all of the longest ray
+/// were half a node off, to the same side, where the function is steepest. So much it does with masks of random bytes,
+/// where places between two values are rounded, too (ValueSampler::eval_rounded); usually by one.
 inline double rounding_error(const ValueRange& scalars, double steepness, double longest) {
   return 0.03 * 0.5 * SlabTable::node_width(scalars) * steepness * longest;
 }

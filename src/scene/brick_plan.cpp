@@ -49,11 +49,6 @@ void choose_step(const BrickSummaries& bricks, std::size_t brick, const IsGood& 
   }
 }
 
-bool has_even_axes(const PreparedGrid& grid) {
-  const auto& axes = grid.data.shape.coordinates;
-  return std::all_of(axes.begin(), axes.end(), [](const std::vector<double>& axis) { return axis.empty(); });
-}
-
 /// Calls `visit(brick)` for the bricks of a group.
 template <class Visit>
 void for_each_brick(const PlanSources& sources, std::size_t group, const Visit& visit) {
@@ -166,6 +161,11 @@ class Planner {
 };
 
 }  // namespace
+
+bool has_even_axes(const PreparedGrid& grid) {
+  const auto& axes = grid.data.shape.coordinates;
+  return std::all_of(axes.begin(), axes.end(), [](const std::vector<double>& axis) { return axis.empty(); });
+}
 
 bool restarts_rate(const PreparedGrid& grid, Integrator integrator) {
   const bool is_exact = integrator == Integrator::kAntiderivative || integrator == Integrator::kPartial;

@@ -55,6 +55,8 @@ struct PlanSources {
   const BrickGroups* groups = nullptr;
 };
 
+bool has_even_axes(const PreparedGrid& grid);
+
 /// Whether steps of a fixed rate may start anew in each brick, where it hardly matters where samples lie: exactly
 /// integrated ones on even axes, with nothing missing. Elsewhere samples are counted on from cell to cell.
 bool restarts_rate(const PreparedGrid& grid, Integrator integrator);

@@ -22,20 +22,18 @@ double count_steps(const PreparedGrid& grid, double samples_per_voxel) {
   return diagonal_of(grid.bounds) / grid::mean_spacing(grid::make_grid_frame(grid.data.shape)) * samples_per_voxel;
 }
 
-/// Whether kernels can read values where they lie.
-bool lie_in_place(const PreparedGrid& grid) {
-  const GridData& data = grid.data;
-  const auto& points = data.shape.dimensions;
-  const bool is_small =
-      data.values.size() <= kMostBytes && *std::max_element(points.begin(), points.end()) <= kMostPoints;
-  const bool is_scaled_only = grid.scalar_offset == 0.0 && grid.scalar_scale > 1e-30 && grid.scalar_scale < 1e30;
-  switch (data.type) {
+bool is_exact(Integrator integrator) {
+  return integrator == Integrator::kAntiderivative || integrator == Integrator::kPartial;
+}
+
+bool is_read_in_place(ScalarType type) {
+  switch (type) {
     case ScalarType::kInt8:
     case ScalarType::kUint8:
     case ScalarType::kInt16:
     case ScalarType::kUint16:
     case ScalarType::kFloat32:
-      return data.association == Association::kPoint && data.components == 1 && is_small && is_scaled_only;
+      return true;
     default:
       return false;
   }
@@ -43,10 +41,26 @@ bool lie_in_place(const PreparedGrid& grid) {
 
 }  // namespace
 
+std::string find_obstacle_to_counting(const PreparedGrid& grid, const RenderSettings& settings) {
+  const GridData& data = grid.data;
+  const auto& points = data.shape.dimensions;
+  if (!is_exact(settings.integrator)) return "the integrator 'antiderivative' or 'partial'";
+  if (settings.filter.kind != FilterKind::kLinear) return "the filter 'linear'";
+  if (!has_even_axes(grid)) return "a grid with even axes";
+  if (grid.missing_values != 0) return "a grid without missing values";
+  if (data.association != Association::kPoint) return "values at the points of a grid, not in its cells";
+  if (data.components != 1) return "a grid of one component";
+  if (!is_read_in_place(data.type)) return "values of 8 or 16 bits or of type float32";
+  if (data.values.size() > kMostBytes || *std::max_element(points.begin(), points.end()) > kMostPoints)
+    return "a grid of at most 4 GiB";
+  if (grid.scalar_offset != 0.0 || !(grid.scalar_scale > 1e-30 && grid.scalar_scale < 1e30))
+    return "values whose range is at least half of the largest one";
+  if (!(count_steps(grid, settings.samples_per_voxel) <= kMostSteps)) return "fewer samples along a ray";
+  return {};
+}
+
 bool counts_steps(const PreparedGrid& grid, const RenderSettings& settings) {
-  const double rate = settings.samples_per_voxel;
-  return rate > 0.0 && settings.filter.kind == FilterKind::kLinear && restarts_rate(grid, settings.integrator) &&
-         lie_in_place(grid) && count_steps(grid, rate) <= kMostSteps;
+  return settings.samples_per_voxel > 0.0 && find_obstacle_to_counting(grid, settings).empty();
 }
 
 bool may_look_slabs_up(const PreparedGrid& grid, const optics::SteepnessTable& steepness,

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace tetravox::scene {
@@ -22,6 +23,9 @@ namespace tetravox::scene {
 /// value), between which the field is linear. Elsewhere steps start anew in each brick, if only exact integration and
 /// even axes without missing values allow it (`restarts_rate`), or samples are counted on from cell to cell.
 bool counts_steps(const PreparedGrid& grid, const RenderSettings& settings);
+
+/// What that lacks, as a user is told: "a grid with even axes"; empty where nothing is lacking.
+std::string find_obstacle_to_counting(const PreparedGrid& grid, const RenderSettings& settings);
 
 /// Whether such steps may be looked up by scalars rounded to the nodes of optics::SlabTable. `steepness`: of the
 /// function.

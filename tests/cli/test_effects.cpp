@@ -291,7 +291,7 @@ TEST_F(Effects, SurfacesAloneAreKept) {
   EXPECT_NE(draw("c.npy", {"s.json", "--lights", "none"}), first);
 }
 
-TEST_F(Effects, APictureAtAFixedRateIsLitWithoutIt) {
+TEST_F(Effects, APictureAtAFixedRateIsLitAtItAndWithoutIt) {
   draw("fast.png", {"builtin:hydrogen", "--samples-per-voxel", "1"});
   EXPECT_NE(draw("fast-lit.npy", {"fast.png", "--shade"}), draw("fast.npy", {"fast.png"}));
   draw("lit.npy", {"fast.png", "--shade", "--samples-per-voxel", "auto"});
@@ -305,7 +305,7 @@ TEST_F(Effects, WhatDoesNotGoTogetherIsRefused) {
     options.insert(options.begin(), {"render", "builtin:hydrogen", "--samples-per-voxel", "1"});
     return run(options);
   };
-  expect_error(at_rate({"--shade", "--filter", "bspline"}), 1, {"'linear'", "--samples-per-voxel auto"});
+  expect_error(at_rate({"--shade", "--filter", "bspline"}), 1, {"the filter 'linear'", "--samples-per-voxel auto"});
   expect_error(at_rate({"--isosurface", "0.5"}), 1, {"iso-surfaces", "--samples-per-voxel auto"});
   expect_error(at_rate({"--output-depth", "z.npy"}), 1, {"depth", "--samples-per-voxel auto"});
   expect_error(run({"render", "builtin:duct?cells=3000", "--array", "volume", "--isosurface", "1"}), 1, {"point data"});

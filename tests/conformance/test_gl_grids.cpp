@@ -212,6 +212,29 @@ TEST_P(GlGrids, SlabsAreThoseOfTheCpu) {
   }
 }
 
+/// Values that the device interpolates, four in a texel, and slices, of one renderer in turns.
+TEST(GlGridPasses, ValuesAreInterpolatedHereAndThere) {
+  TETRAVOX_REQUIRE_GL();
+  const GridSubject scene(make_hard_grids()[0].grid);
+  Pair pair(scene.grid);
+  pair.set_transfer_function(scene.function("smooth"));
+  RenderSettings settings = tests::make_settings(Integrator::kAntiderivative, 77, 53);
+  settings.samples_per_voxel = 0.8;
+  settings.tolerance = 0.1;
+  RenderSettings precise = settings, sliced = settings;
+  precise.tolerance = 1e-5;
+  sliced.source = Source::kSlices;
+  sliced.samples_per_voxel = 0.0;
+  const Camera& camera = scene.camera("outside");
+  const Image first = pair.gl.render(camera, settings);
+  const Image slices = pair.gl.render(camera, sliced);
+  const Image exact = pair.gl.render(camera, precise);
+  EXPECT_TRUE(tests::images_equal(pair.gl.render(camera, settings), first));
+  EXPECT_TRUE(tests::images_equal(pair.gl.render(camera, sliced), slices));
+  EXPECT_TRUE(tests::images_equal(pair.gl.render(camera, precise), exact));
+  EXPECT_TRUE(tests::images_agree(exact, pair.cpu.render(camera, precise), 3e-3, 3e-4));
+}
+
 TEST(GlGridPasses, NodesThatDoNotFitComeInTurns) {
   TETRAVOX_REQUIRE_GL();
   tests::GridOptions options;

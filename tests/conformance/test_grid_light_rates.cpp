@@ -8,6 +8,8 @@
 #include "tetravox/error.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -116,6 +118,45 @@ TEST(GridLightRates, KnowTheSurroundings) {
   };
   // A side that looks at the eye can be lit by half of the sky, and the next one, which has turned over, by the other.
   EXPECT_TRUE(tests::images_agree(draw(settings), draw(without_rate(settings)), 5e-2, 1e-3));
+}
+
+/// Cells that are first and last along an axis.
+TEST(GridLightRates, SmallGridsHaveGradientsAtTheirBorder) {
+  for (const std::array<std::uint32_t, 3>& dimensions :
+       {std::array<std::uint32_t, 3>{2, 2, 2}, {2, 3, 9}, {9, 3, 2}, {3, 2, 4}})
+    for (const ScalarType type : kInPlace) {
+      tests::GridOptions options;
+      options.dimensions = dimensions;
+      options.type = type;
+      const tests::Field field = tests::make_random_field(9, 2.0);
+      const GridSubject scene(make_grid(options, [&](const Vector3& p) { return std::round(100.0 * field(p)); }));
+      for (const GradientMethod gradient : {GradientMethod::kCentral, GradientMethod::kFilter}) {
+        RenderSettings settings = lit_at_rate(32.0, Integrator::kAntiderivative);
+        settings.lighting.gradient = gradient;
+        const auto draw = [&](const RenderSettings& wanted) {
+          return render(scene.grid, scene.function("smooth"), scene.camera("outside"), wanted);
+        };
+        EXPECT_TRUE(tests::images_agree(draw(settings), draw(without_rate(settings)), 2e-2, 2e-3))
+            << dimensions[0] << " x " << dimensions[1] << " x " << dimensions[2] << " " << scalar_type_name(type) << " "
+            << name_of(gradient);
+        settings.samples_per_voxel = 0.8;
+        settings.tolerance = 0.1;
+        for (const float value : draw(settings).pixels) ASSERT_TRUE(std::isfinite(value));
+      }
+    }
+}
+
+/// Rays that the clipping cuts into several parts.
+TEST(GridLightRates, ClippedRaysAreTakenUpAgain) {
+  const GridSubject scene(make_numbers(ScalarType::kUint8));
+  for (const auto& [name, camera] : scene.cameras) {
+    RenderSettings settings = lit_at_rate(24.0, Integrator::kAntiderivative);
+    settings.clipping.shapes = {{ClipSphere{{0.1, 0.0, -0.1}, 0.6}, false}, {ClipSphere{{-0.5, 0.5, 0.4}, 0.3}, false}};
+    EXPECT_TRUE(tests::images_agree(render(scene.grid, scene.function("smooth"), camera, settings),
+                                    render(scene.grid, scene.function("smooth"), camera, without_rate(settings)), 3e-3,
+                                    3e-4))
+        << name;
+  }
 }
 
 /// Segments of the same ends, looked up with these rounded or integrated exactly, lit.

@@ -1,5 +1,8 @@
 /// Grids at a fixed rate: against the exact picture, and against each other.
 
+#include "src/optics/antiderivative_table.h"
+#include "src/optics/slab_table.h"
+#include "src/optics/steepness_table.h"
 #include "src/scene/fixed_rate.h"
 #include "tests/common/image_compare.h"
 #include "tests/conformance/grid_rates.h"
@@ -113,6 +116,54 @@ TEST(GridRates, SlabsErrNoMoreThanTheTolerance) {
             EXPECT_LE(difference.rms, tolerance / 10.0) << name << " " << function_name << " " << camera_name;
           }
   }
+}
+
+double largest_of(ScalarType type) {
+  const double span = scalar_type_size(type) == 1 ? 255.0 : 65535.0;
+  return type == ScalarType::kInt8 || type == ScalarType::kInt16 ? std::floor(span / 2.0) : span;
+}
+
+/// What slabs may err by (optics::rounding_error).
+double find_rounding_error(const PreparedGrid& grid, const OpticalFunction& function) {
+  const ValueRange stored = scene::stored_range(grid);
+  const auto min = static_cast<float>(stored.min), max = static_cast<float>(stored.max);
+  optics::SteepnessTable steepness;
+  optics::build_steepness_table(optics::build_control_point_table(function, {grid.scalar_offset, grid.scalar_scale}),
+                                min, max, steepness);
+  return optics::rounding_error(stored, steepness.largest_steepness(min, max), tests::diagonal_of(grid.bounds));
+}
+
+/// Integers that jump as far as their type lets them, and masks of two numbers: where slabs are looked up, places
+/// between two values are rounded, too.
+TEST(GridRates, RoundedPlacesErrAsMuchAsSaid) {
+  const tests::Field noise = tests::make_random_field(77, 40.0);
+  for (const ScalarType type : {ScalarType::kInt8, ScalarType::kUint8, ScalarType::kInt16, ScalarType::kUint16})
+    for (const double most : {1.0, 255.0, 65535.0})
+      for (const bool is_mask : {true, false}) {
+        if (most > largest_of(type)) continue;
+        tests::GridOptions options;
+        options.dimensions = {21, 20, 19};
+        options.type = type;
+        const tests::Field field = [&](const Vector3& p) { return most * (is_mask ? std::round(noise(p)) : noise(p)); };
+        const GridSubject scene(make_grid(options, field));
+        for (const auto& [name, function] : scene.functions) {
+          const double allowed = find_rounding_error(scene.grid, function);
+
+          tests::ImageDifference worst;
+          for (const auto& [camera_name, camera] : scene.cameras)
+            for (const double rate : {0.8, 2.0}) {
+              const auto draw = [&](Integrator integrator) {
+                return render(scene.grid, function, camera, at_rate(rate, integrator, std::min(1.001 * allowed, 1.0)));
+              };
+              const tests::ImageDifference difference =
+                  tests::compare_images(draw(Integrator::kAntiderivative), draw(Integrator::kPartial));
+              if (difference.max > worst.max) worst = difference;
+            }
+          std::printf("%s 0..%g %s %s: max %.2e RMS %.2e, %.2f of what is allowed\n", scalar_type_name(type).c_str(),
+                      most, is_mask ? "mask" : "noise", name.c_str(), worst.max, worst.rms, worst.max / allowed);
+          EXPECT_LE(worst.max, allowed) << scalar_type_name(type) << " " << most << " " << name;
+        }
+      }
 }
 
 /// Slabs looked up or integrated, whole rays and clipped ones.

@@ -163,10 +163,9 @@ struct PassingRays {
   PassingRays(const MarchJob& job, int first) {
     const scene::RayGrid& grid = *job.grid;
     const Int ray = hn::LoadU(kInt, job.rays->met.ray + first);
-    const Int column = hn::Add(hn::And(ray, hn::Set(kInt, kTileSize - 1)), hn::Set(kInt, job.column));
-    const Int row = hn::Add(hn::ShiftRight<5>(ray), hn::Set(kInt, job.row));
-    hn::Store(hn::Add(hn::Mul(row, hn::Set(kInt, grid.width)), column), kInt, pixels);
-    view = view_of_tile(grid, job.column, job.row, ray);
+    const RayPixels at = pixels_of_tile(grid, job.column, job.row, ray);
+    hn::Store(hn::Add(hn::Mul(at.row, hn::Set(kInt, grid.width)), at.column), kInt, pixels);
+    view = view_of(grid, at);
     view.pixels = pixels;
     depth = hn::GatherIndex(kFloat, job.rays->depth, ray);
     z_left = hn::GatherIndex(kFloat, job.rays->z_left, ray);

@@ -203,8 +203,8 @@ struct MarchValues {
   const std::byte* values = nullptr;
   std::int32_t dimensions[3] = {2, 2, 2};  ///< at least 2 each
   std::ptrdiff_t row_bytes = 1, slice_bytes = 1;
-  int value_bytes = 1;     ///< 1 and 2: integers without sign; 4: floats
-  std::uint32_t flip = 0;  ///< turned over in each pair of integers: sign bits, so that signed ones have none
+  int value_bytes = 1;     ///< 1: integers without sign; 2: integers with one; 4: floats
+  std::uint32_t flip = 0;  ///< turned over in each word of integers, to make them so
   /// scalar of the integrator = (value - offset) * inverse_scale
   float offset = 0.0f, inverse_scale = 1.0f;
 };
@@ -223,10 +223,11 @@ struct PacketJob {
   bool use_early_ray_termination = true;
   float negligible = 0.0f;  ///< as in `MarchJob`
   /// For light:
+  float faint = 0.0f;                    ///< as `Effects::faint`, of one step
   const scene::RayGrid* grid = nullptr;  ///< with the tile's corner
   int column = 0, row = 0;
   bool has_central_gradients = true;  ///< else those of the trilinear field
-  float stored_per_scalar = 1.0f;     ///< stored scalars, of one of the integrator
+  float stored_per_scalar = 1.0f;     ///< stored scalars, of one of the integrator's
 };
 
 /// One row of a table of slabs.

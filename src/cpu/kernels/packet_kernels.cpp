@@ -24,7 +24,7 @@ std::uint64_t march_packets(const PacketJob& job) {
     case 1:
       return PacketMarcher<std::uint8_t, Integrator, kIsLit>(job).run();
     case 2:
-      return PacketMarcher<std::uint16_t, Integrator, kIsLit>(job).run();
+      return PacketMarcher<std::int16_t, Integrator, kIsLit>(job).run();
     default:
       return PacketMarcher<float, Integrator, kIsLit>(job).run();
   }

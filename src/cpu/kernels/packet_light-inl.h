@@ -33,19 +33,19 @@ struct RayCourse {
 template <class T, class Integrator, int kSteps>
 class LitSteps {
  public:
-  LitSteps(const PacketJob& job, const Integrator& integrator)
+  LitSteps(const PacketJob& job, const Integrator& integrator, const ValueSampler<T>& sampler)
       : job_(job),
         integrator_(integrator),
+        sampler_(sampler),
         effects_(*job.tables->effects),
-        is_lit_from_eye_(is_lit_from_eye(*effects_.shading)),
-        sampler_(*job.values) {}
+        is_lit_from_eye_(is_lit_from_eye(*effects_.shading)) {}
 
-  void clear() { count_ = waiting_ = 0; }
+  void begin_run() { count_ = waiting_ = 0; }
 
   /// Adds the next step: between two depths, `part` what it adds to the rays, whose transmittance was `before`.
   HWY_INLINE void add(const Segments& segment, Float z_front, Float z_back, const Accumulated& part, Float before) {
     const Float absorbed = hn::Sub(before, part.transmittance), faintly = constant(effects_.usual_light);
-    const Mask is_bright = hn::Gt(absorbed, constant(effects_.faint));
+    const Mask is_bright = hn::Gt(absorbed, constant(job_.faint));
     const std::size_t slot = count_ * kLanes;
     hn::Store(hn::Mul(part.red, faintly), kFloat, lit_[0] + slot);
     hn::Store(hn::Mul(part.green, faintly), kFloat, lit_[1] + slot);
@@ -54,15 +54,23 @@ class LitSteps {
     if (hn::AllFalse(kFloat, is_bright)) return;
     const Int slots = hn::Iota(kInt, static_cast<std::int32_t>(slot));
     hn::StoreU(hn::Compress(slots, int_mask(is_bright)), kInt, slots_ + waiting_);
-    const Float values[kValues] = {segment.scalar_front, segment.scalar_back, z_front, z_back,  part.red,
-                                   part.green,           part.blue,           before,  absorbed};
-    for (int i = 0; i < kValues; ++i)
-      hn::StoreU(hn::Compress(values[i], is_bright), kFloat, waiting_values_[i] + waiting_);
+    const auto keep = [&](Value which, Float value) {
+      hn::StoreU(hn::Compress(value, is_bright), kFloat, waiting_values_[which] + waiting_);
+    };
+    keep(kFront, segment.scalar_front);
+    keep(kBack, segment.scalar_back);
+    keep(kZFront, z_front);
+    keep(kZBack, z_back);
+    keep(kRed, part.red);
+    keep(kGreen, part.green);
+    keep(kBlue, part.blue);
+    keep(kBefore, before);
+    keep(kAbsorbed, absorbed);
     waiting_ += hn::CountTrue(kFloat, is_bright);
   }
 
   /// Adds the steps, lit, to the colours of `sum`.
-  HWY_INLINE void shine(const RayCourse& course, Accumulated& sum) {
+  HWY_INLINE void composite(const RayCourse& course, Accumulated& sum) {
     for (std::size_t first = 0; first < waiting_; first += kLanes) light(course, first);
     for (std::size_t i = 0; i < waiting_; ++i)
       for (int color = 0; color < 3; ++color) lit_[color][slots_[i]] = waiting_values_[kRed + color][i];
@@ -98,13 +106,13 @@ class LitSteps {
         is_lit_from_eye_
             ? illuminate_from_eye(*effects_.shading, gradient, view.direction())
             : illuminate(*effects_.shading, {view.position(depth), gradient, view.to_eye(), wanted, false});
-    const auto shine = [&](Value color, Float diffuse, Float specular) {
-      hn::StoreU(multiply_add(absorbed, specular, hn::Mul(value(color), diffuse)), kFloat,
-                 waiting_values_[color] + first);
+    const auto store_lit = [&](Value color, Float diffuse, Float specular) {
+      const Float lit = multiply_add(absorbed, specular, hn::Mul(value(color), diffuse));
+      hn::StoreU(lit, kFloat, waiting_values_[color] + first);
     };
-    shine(kRed, light.diffuse.x, light.specular.x);
-    shine(kGreen, light.diffuse.y, light.specular.y);
-    shine(kBlue, light.diffuse.z, light.specular.z);
+    store_lit(kRed, light.diffuse.x, light.specular.x);
+    store_lit(kGreen, light.diffuse.y, light.specular.y);
+    store_lit(kBlue, light.diffuse.z, light.specular.z);
   }
 
   /// Where steps are seen, from 0 in front to 1 behind.
@@ -124,9 +132,9 @@ class LitSteps {
 
   const PacketJob& job_;
   const Integrator& integrator_;
+  const ValueSampler<T>& sampler_;
   const Effects& effects_;
   bool is_lit_from_eye_;
-  ValueSampler<T> sampler_;
   std::size_t count_ = 0, waiting_ = 0;
   HWY_ALIGN float lit_[3][kMost];  // colours, [step][lane]
   // Steps bright enough for a normal, one after the other: where in `lit_` they belong, and what is known of them; once

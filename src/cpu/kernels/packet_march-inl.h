@@ -13,7 +13,6 @@
 #include "src/cpu/kernels/packet_light-inl.h"
 #include "src/cpu/kernels/rays-inl.h"
 #include "src/cpu/kernels/segments-inl.h"
-#include "src/cpu/kernels/slab-inl.h"
 #include "src/cpu/kernels/value_sampler-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 #include "tetravox/grid.h"
@@ -38,7 +37,7 @@ template <class T, class Integrator, bool kIsLit>
 class PacketMarcher {
  public:
   explicit PacketMarcher(const PacketJob& job)
-      : job_(job), sampler_(*job.values), integrator_(*job.tables), lit_steps_(job, integrator_) {}
+      : job_(job), sampler_(*job.values), integrator_(*job.tables), lit_steps_(job, integrator_, sampler_) {}
 
   std::uint64_t run() {
     for (int row = 0; row < kTileSize; row += kRows)
@@ -48,7 +47,7 @@ class PacketMarcher {
 
  private:
   static constexpr int kColumns = 4, kRows = 4, kRays = kColumns * kRows, kRun = 6;
-  static constexpr bool kRoundsScalars = std::is_integral_v<T> && std::is_same_v<Integrator, SlabIntegrator>;
+  static constexpr bool kRoundsScalars = std::is_integral_v<T> && requires { requires Integrator::kRoundsScalars; };
   static constexpr int kVectors = kRays / static_cast<int>(kLanes);
 
   struct Rays {
@@ -74,7 +73,7 @@ class PacketMarcher {
   };
 
   struct Unlit {
-    Unlit(const PacketJob&, const Integrator&) {}
+    Unlit(const PacketJob&, const Integrator&, const ValueSampler<T>&) {}
   };
 
   static HWY_INLINE float smallest(Float values) { return hn::GetLane(hn::MinOfLanes(kFloat, values)); }
@@ -122,7 +121,8 @@ class PacketMarcher {
       rays.index[lane] = (row + ray / kColumns) * kTileSize + column + ray % kColumns;
     }
     const Int index = hn::Load(kInt, rays.index);
-    if constexpr (kIsLit) rays.course.view = view_of_tile(*job_.grid, job_.column, job_.row, index);
+    if constexpr (kIsLit)
+      rays.course.view = view_of(*job_.grid, pixels_of_tile(*job_.grid, job_.column, job_.row, index));
     const auto gather = [&](const float* from) { return hn::GatherIndex(kFloat, from, index); };
     const Float never = constant(kNever);
     rays.enter = gather(tile.z_near);
@@ -251,7 +251,7 @@ class PacketMarcher {
     }
     Float depth = rays.depth, scalar = rays.scalar;
     Accumulated sum = rays.sum;
-    if constexpr (kIsLit) lit_steps_.clear();
+    if constexpr (kIsLit) lit_steps_.begin_run();
     // Samples do not wait for each other: all of them first.
     HWY_ALIGN float backs[kRun * kLanes];
     const auto depth_after = [&](int step) {
@@ -283,7 +283,7 @@ class PacketMarcher {
       scalar = back;
       depth = next;
     }
-    if constexpr (kIsLit) lit_steps_.shine(rays.course, sum);
+    if constexpr (kIsLit) lit_steps_.composite(rays.course, sum);
     if constexpr (kIsWhole) rays.taken = hn::Add(rays.taken, hn::Set(kInt, kRun));
     rays.scalar = scalar;
     rays.depth = depth;

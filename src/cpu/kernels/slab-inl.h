@@ -58,6 +58,8 @@ class SlabIntegrator {
     Int row;
   };
 
+  static constexpr bool kRoundsScalars = true;  ///< whether scalars need not be known better than to half a node
+
   explicit SlabIntegrator(const IntegratorTables& tables)
       : table_(*tables.slabs),
         entries_(table_.entries.data()),

@@ -44,14 +44,22 @@ struct RayView {
   }
 };
 
-/// Rays of the tile that has its corner there, by number in the tile. Those beyond the picture are its last ones.
-HWY_INLINE RayView view_of_tile(const scene::RayGrid& grid, int column, int row, Int ray) {
+/// Pixels of a vector of rays.
+struct RayPixels {
+  Int column, row;
+};
+
+/// Of rays by their numbers in the tile that has its corner there. Those beyond the picture are at its border.
+HWY_INLINE RayPixels pixels_of_tile(const scene::RayGrid& grid, int column, int row, Int ray) {
   static_assert(kTileSize == 32);
   const Int x = hn::Add(hn::And(ray, hn::Set(kInt, kTileSize - 1)), hn::Set(kInt, column));
   const Int y = hn::Add(hn::ShiftRight<5>(ray), hn::Set(kInt, row));
-  const Int column_at = hn::Min(x, hn::Set(kInt, grid.width - 1)), row_at = hn::Min(y, hn::Set(kInt, grid.height - 1));
-  return {hn::GatherIndex(kFloat, grid.column_offset, column_at), hn::GatherIndex(kFloat, grid.column_slope, column_at),
-          hn::GatherIndex(kFloat, grid.row_offset, row_at), hn::GatherIndex(kFloat, grid.row_slope, row_at)};
+  return {hn::Min(x, hn::Set(kInt, grid.width - 1)), hn::Min(y, hn::Set(kInt, grid.height - 1))};
+}
+
+HWY_INLINE RayView view_of(const scene::RayGrid& grid, const RayPixels& at) {
+  return {hn::GatherIndex(kFloat, grid.column_offset, at.column), hn::GatherIndex(kFloat, grid.column_slope, at.column),
+          hn::GatherIndex(kFloat, grid.row_offset, at.row), hn::GatherIndex(kFloat, grid.row_slope, at.row)};
 }
 
 /// A place on a stretch.

@@ -8,202 +8,18 @@
 #endif
 
 #include "src/cpu/kernels/kernels.h"
+#include "src/cpu/kernels/pair_products-inl.h"
 #include "src/cpu/kernels/triples-inl.h"
+#include "src/cpu/kernels/value_pairs-inl.h"
 #include "src/cpu/kernels/vector_math-inl.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetravox::cpu {
 namespace HWY_NAMESPACE {
-
-/// Two values side by side along a row, of each lane.
-struct Pair {
-  Float first, second;
-};
-
-/// Where the pairs of a vector of rays begin: bytes from the first value.
-struct PairOffsets {
-  HWY_ALIGN std::uint32_t lane[kLanes];
-
-  explicit PairOffsets(Uint offset) { hn::Store(offset, kUint, lane); }
-};
-
-template <class T>
-HWY_INLINE T read_as(const std::byte* from) {
-  T value;
-  std::memcpy(&value, from, sizeof value);
-  return value;
-}
-
-/// The four bytes at `from + offset` of each lane. Where we know how, they are put into registers one by one: what is
-/// stored in parts and loaded as a whole keeps a processor waiting, and hardware gathers take longer.
-HWY_INLINE Uint load_words(const std::byte* from, const PairOffsets& offset) {
-  const auto read = [&](std::size_t i) { return read_as<std::uint32_t>(from + offset.lane[i]); };
-#if HWY_TARGET == HWY_SCALAR
-  return hn::Set(kUint, read(0));
-#elif HWY_ARCH_X86
-  const auto block = [&](std::size_t i) {
-    const auto at = [&](std::size_t lane) { return static_cast<int>(read(i + lane)); };
-    return Block{_mm_castsi128_ps(_mm_set_epi32(at(3), at(2), at(1), at(0)))};
-  };
-  return hn::BitCast(kUint, load_blocks(kFloat, block, 0));
-#else
-  HWY_ALIGN std::uint32_t words[kLanes];
-  for (std::size_t i = 0; i < kLanes; ++i) words[i] = read(i);
-  return hn::Load(kUint, words);
-#endif
-}
-
-/// Pairs of integers without sign in the slice `from` of two, after the bits `flip` have been turned over. Pairs of
-/// bytes begin a word of the lower slice and end one of the upper slice, so that no word lies beyond the values.
-template <class T, bool kIsUpper>
-HWY_INLINE Pair load_integers(const std::byte* from, const PairOffsets& offset, Uint flip) {
-  const auto number = [](Uint bits) { return hn::ConvertTo(kFloat, hn::BitCast(kInt, bits)); };
-  const Uint mask = hn::Set(kUint, sizeof(T) == 1 ? 0xFFu : 0xFFFFu);
-  if constexpr (sizeof(T) == 2) {
-    const Uint words = hn::Xor(load_words(from, offset), flip);
-    return {number(hn::And(words, mask)), number(hn::ShiftRight<16>(words))};
-  } else if constexpr (kIsUpper) {
-    const Uint words = hn::Xor(load_words(from - 2, offset), flip);
-    return {number(hn::And(hn::ShiftRight<16>(words), mask)), number(hn::ShiftRight<24>(words))};
-  } else {
-    const Uint words = hn::Xor(load_words(from, offset), flip);
-    return {number(hn::And(words, mask)), number(hn::And(hn::ShiftRight<8>(words), mask))};
-  }
-}
-
-/// Pairs of floats and those `row` bytes further, of each lane.
-HWY_INLINE Record load_float_squares(const std::byte* from, std::ptrdiff_t row, const PairOffsets& offset) {
-#if HWY_TARGET == HWY_SCALAR
-  const auto at = [&](std::ptrdiff_t bytes) { return constant(read_as<float>(from + bytes + offset.lane[0])); };
-  return {at(0), at(4), at(row), at(row + 4)};
-#else
-  return transpose_blocks([&](std::size_t i) {
-    const hn::Full64<float> pair;
-    const auto at = [&](const std::byte* place) { return hn::LoadU(pair, reinterpret_cast<const float*>(place)); };
-    return hn::Combine(hn::Full128<float>(), at(from + row + offset.lane[i]), at(from + offset.lane[i]));
-  });
-#endif
-}
-
-/// Four values in a row from `from` on, of each lane.
-template <class T>
-HWY_INLINE Record load_quads(const std::byte* from, const PairOffsets& offset, Uint flip) {
-  if constexpr (sizeof(T) == 4) {
-    return transpose_records([&](std::size_t i) { return reinterpret_cast<const float*>(from + offset.lane[i]); });
-  } else if constexpr (sizeof(T) == 2) {
-    const Pair a = load_integers<T, false>(from, offset, flip), b = load_integers<T, false>(from + 4, offset, flip);
-    return {a.first, a.second, b.first, b.second};
-  } else {
-    const Uint words = hn::Xor(load_words(from, offset), flip), mask = hn::Set(kUint, 0xFFu);
-    const auto number = [](Uint bits) { return hn::ConvertTo(kFloat, hn::BitCast(kInt, bits)); };
-    return {number(hn::And(words, mask)), number(hn::And(hn::ShiftRight<8>(words), mask)),
-            number(hn::And(hn::ShiftRight<16>(words), mask)), number(hn::ShiftRight<24>(words))};
-  }
-}
-
-/// Weighs pairs of values in whole numbers: b of each pair (a, b) with `weight`, a with what `kMost` leaves of that.
-#if HWY_TARGET != HWY_SCALAR && HWY_ARCH_X86
-using Bytes = hn::Vec<hn::Repartition<std::uint8_t, UintTag>>;
-using Shorts = hn::Vec<hn::Repartition<std::int16_t, UintTag>>;
-
-/// The bytes `which` of each 16, `flip` turned over.
-HWY_INLINE Bytes repeat_bytes(Uint from, const std::uint8_t which[16], std::uint32_t flip) {
-  const hn::Repartition<std::uint8_t, UintTag> tag;
-  const Bytes repeated = hn::TableLookupBytes(hn::BitCast(tag, from), hn::LoadDup128(tag, which));
-  return hn::Xor(repeated, hn::BitCast(tag, hn::Set(kUint, flip)));
-}
-
-/// Two pairs of bytes a lane.
-class BytePairs {
- public:
-  static constexpr int kMost = 255;
-
-  explicit BytePairs(Uint weight) {
-    alignas(16) static constexpr std::uint8_t kByte[16] = {0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12};
-    weights_ = repeat_bytes(weight, kByte, 0x00FF00FFu);
-  }
-  /// A pair of 16 bits a lane.
-  HWY_INLINE Uint eval(Uint pairs) const {
-#if HWY_TARGET == HWY_SSE4
-    return Uint{_mm_maddubs_epi16(weights_.raw, pairs.raw)};
-#elif HWY_TARGET == HWY_AVX2
-    return Uint{_mm256_maddubs_epi16(weights_.raw, pairs.raw)};
-#else
-    return Uint{_mm512_maddubs_epi16(weights_.raw, pairs.raw)};
-#endif
-  }
-
- private:
-  Bytes weights_;
-};
-
-/// A pair of 16 bits a lane.
-class ShortPairs {
- public:
-  static constexpr int kMost = 32767;
-
-  explicit ShortPairs(Uint weight) {
-    alignas(16) static constexpr std::uint8_t kShort[16] = {0, 1, 0, 1, 4, 5, 4, 5, 8, 9, 8, 9, 12, 13, 12, 13};
-    weights_ = hn::BitCast(hn::Repartition<std::int16_t, UintTag>(), repeat_bytes(weight, kShort, 0x00007FFFu));
-  }
-  HWY_INLINE Int eval(Uint pairs) const {
-#if HWY_TARGET == HWY_SSE4
-    return Int{_mm_madd_epi16(weights_.raw, pairs.raw)};
-#elif HWY_TARGET == HWY_AVX2
-    return Int{_mm256_madd_epi16(weights_.raw, pairs.raw)};
-#else
-    return Int{_mm512_madd_epi16(weights_.raw, pairs.raw)};
-#endif
-  }
-
- private:
-  Shorts weights_;
-};
-
-/// The first two bytes of `low`, the last two of `high`.
-HWY_INLINE Uint join_halves(Uint low, Uint high) {
-  const hn::Repartition<std::int16_t, UintTag> shorts;
-  return hn::BitCast(kUint, hn::OddEven(hn::BitCast(shorts, high), hn::BitCast(shorts, low)));
-}
-#else
-template <class T, class Sum, int kLargest>
-class WholePairs {
- public:
-  static constexpr int kMost = kLargest;
-
-  explicit WholePairs(Uint weight) { hn::Store(hn::And(weight, hn::Set(kUint, kMost)), kUint, weights_); }
-
-  HWY_INLINE hn::Vec<hn::Rebind<Sum, UintTag>> eval(Uint pairs) const {
-    constexpr int kBits = 8 * sizeof(T), kSumBits = 2 * kBits;
-    HWY_ALIGN std::uint32_t lanes[kLanes];
-    hn::Store(pairs, kUint, lanes);
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      const auto weight = static_cast<std::int32_t>(weights_[i]);
-      std::uint32_t sums = 0;
-      for (int bit = 0; bit < 32; bit += kSumBits) {
-        const auto a = static_cast<T>(lanes[i] >> bit), b = static_cast<T>(lanes[i] >> (bit + kBits));
-        const auto sum = static_cast<std::uint32_t>((kMost - weight) * a + weight * b);
-        sums |= (kSumBits == 32 ? sum : sum & 0xFFFFu) << bit;
-      }
-      lanes[i] = sums;
-    }
-    return hn::BitCast(hn::Rebind<Sum, UintTag>(), hn::Load(kUint, lanes));
-  }
-
- private:
-  HWY_ALIGN std::uint32_t weights_[kLanes];
-};
-using BytePairs = WholePairs<std::int8_t, std::uint32_t, 255>;
-using ShortPairs = WholePairs<std::int16_t, std::int32_t, 32767>;
-
-HWY_INLINE Uint join_halves(Uint low, Uint high) {
-  return hn::Or(hn::And(low, hn::Set(kUint, 0xFFFFu)), hn::And(high, hn::Set(kUint, 0xFFFF0000u)));
-}
-#endif
 
 /// The trilinear field of a whole grid of values of type T.
 template <class T>
@@ -239,33 +55,33 @@ class ValueSampler {
   /// The same of integers, the place between two values rounded: of bytes to parts of 255 along x and of 32767 along z,
   /// of 16 bits to parts of 32767 along x.
   HWY_INLINE Float eval_rounded(const Float at[3]) const {
+    static_assert(std::is_integral_v<T>);
     const Cell cell = find_cell(at);
     const PairOffsets offset(cell.first);
     const auto whole = [](Float part, int most) {
       return hn::BitCast(kUint, multiply_add(part, constant(static_cast<float>(most)), constant(kInteger)));
     };
     const auto scalar = [&](Float sum, float parts, float middle) {
-      const Float value = multiply_add(sum, constant(1.0f / parts), constant(middle));
-      return hn::Mul(hn::Sub(value, offset_), inverse_scale_);
+      const Float less = hn::Sub(constant(middle), offset_);
+      return hn::Mul(multiply_add(sum, constant(1.0f / parts), less), inverse_scale_);
     };
     if constexpr (sizeof(T) == 1) {
       const BytePairs by_x(whole(cell.t[0], BytePairs::kMost));
       const ShortPairs by_z(whole(cell.t[2], ShortPairs::kMost));
-      const Uint sign = hn::Xor(flip_, hn::Set(kUint, 0x80808080u));
+      const Uint signs = hn::Xor(flip_, hn::Set(kUint, 0x80808080u));  // less 128
       const auto row = [&](const std::byte* from) {
         const Uint both = join_halves(load_words(from, offset), load_words(from + slice_ - 2, offset));
-        return hn::ConvertTo(kFloat, by_z.eval(by_x.eval(hn::Xor(both, sign))));
+        return hn::ConvertTo(kFloat, by_z.eval(by_x.eval(hn::Xor(both, signs))));
       };
       return scalar(mix(cell.t[1], row(values_), row(values_ + row_)), 255.0f * 32767.0f, 128.0f);
     } else {
       const ShortPairs by_x(whole(cell.t[0], ShortPairs::kMost));
-      const Uint sign = hn::Xor(flip_, hn::Set(kUint, 0x80008000u));
       const auto row = [&](const std::byte* from) {
-        return hn::ConvertTo(kFloat, by_x.eval(hn::Xor(load_words(from, offset), sign)));
+        return hn::ConvertTo(kFloat, by_x.eval(hn::Xor(load_words(from, offset), flip_)));
       };
       const Float low = mix(cell.t[1], row(values_), row(values_ + row_));
       const Float high = mix(cell.t[1], row(values_ + slice_), row(values_ + slice_ + row_));
-      return scalar(mix(cell.t[2], low, high), 32767.0f, 32768.0f);
+      return scalar(mix(cell.t[2], low, high), 32767.0f, 0.0f);
     }
   }
 
