@@ -91,11 +91,10 @@ class GridRenderer final : public scene::FrameRenderer {
              RenderStatistics& statistics);
   FilteredBricks filtered_bricks(const scene::PlanSources& sources, const RenderSettings& settings) const;
   MarchKind kind_of(const RenderSettings& settings) const;
-  /// Whether the device is to interpolate values: where rays look slabs up, which rounds scalars anyway. Software
-  /// filters floats well, but rounds filtered integers to whole numbers.
+  /// Whether the device is to interpolate values: floats, where rays look slabs up, which rounds scalars anyway. Software
+  /// rounds filtered integers to whole numbers.
   bool wants_filter(const MarchKind& kind, const RenderSettings& settings) const {
-    return kind.has_runs && scene::may_look_slabs_up(grid_, steepness_, settings) &&
-           (device_->values.has_floats() || !context_->device().is_software);
+    return kind.has_runs && device_->values.has_floats() && scene::may_look_slabs_up(grid_, steepness_, settings);
   }
   /// Where every fetch is a call, as of software, fewer and larger ones pay; hardware has caches and units for them.
   bool wants_squares(const RenderSettings& settings) const {
