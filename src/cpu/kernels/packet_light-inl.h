@@ -27,6 +27,7 @@ namespace HWY_NAMESPACE {
 struct RayCourse {
   Float origin[3], direction[3];  // index coordinates of the values; for one unit of depth
   RayView view;                   // camera frame
+  Float per_square;               // 1 / square of the direction there
 };
 
 /// Up to `kSteps` steps of a vector of rays, and the light on them.
@@ -64,7 +65,7 @@ class LitSteps {
     keep(kRed, part.red);
     keep(kGreen, part.green);
     keep(kBlue, part.blue);
-    keep(kBefore, before);
+    if constexpr (!kKnowsCenters) keep(kBefore, before);
     keep(kAbsorbed, absorbed);
     waiting_ += hn::CountTrue(kFloat, is_bright);
   }
@@ -82,6 +83,10 @@ class LitSteps {
   }
 
  private:
+  /// Whether the integrator knows where a step is seen, from 0 in front to 1 behind.
+  static constexpr bool kKnowsCenters = requires(const Integrator& integrator, Float scalar) {
+    integrator.find_center(scalar, scalar);
+  };
   enum Value { kFront, kBack, kZFront, kZBack, kRed, kGreen, kBlue, kBefore, kAbsorbed, kValues };
   static constexpr std::size_t kMost = kSteps * kLanes;
 
@@ -94,18 +99,28 @@ class LitSteps {
     const auto of_ray = [&](Float values) { return hn::TableLookupLanes(values, ray); };
 
     const Float absorbed = value(kAbsorbed);
-    const Float opacity = hn::Div(absorbed, hn::Max(value(kBefore), constant(1e-30f)));
-    const Float depth = mix(find_center(value(kFront), value(kBack), opacity), value(kZFront), value(kZBack));
+    Float center;
+    if constexpr (kKnowsCenters) {
+      center = integrator_.find_center(value(kFront), value(kBack));
+    } else {
+      const Float opacity = hn::Div(absorbed, hn::Max(value(kBefore), constant(1e-30f)));
+      center = find_emission(effects_.centroid, {value(kFront), value(kBack), constant(0.0f)}, opacity).center;
+    }
+    const Float depth = mix(center, value(kZFront), value(kZBack));
     Float at[3];
     for (int axis = 0; axis < 3; ++axis)
       at[axis] = multiply_add(of_ray(course.direction[axis]), depth, of_ray(course.origin[axis]));
     const Triple gradient = transform(effects_.camera_from_gradient, 3, find_gradient(at));
     const RayView view{of_ray(course.view.x_offset), of_ray(course.view.x_slope), of_ray(course.view.y_offset),
                        of_ray(course.view.y_slope)};
-    const Illumination light =
-        is_lit_from_eye_
-            ? illuminate_from_eye(*effects_.shading, gradient, view.direction())
-            : illuminate(*effects_.shading, {view.position(depth), gradient, view.to_eye(), wanted, false});
+    Illumination light;
+    if (is_lit_from_eye_) {
+      const Float along = dot(gradient, view.direction());
+      const Float along_square = hn::Mul(hn::Mul(along, along), of_ray(course.per_square));
+      light = colored(*effects_.shading, light_from_eye(*effects_.shading, dot(gradient, gradient), along_square));
+    } else {
+      light = illuminate(*effects_.shading, {view.position(depth), gradient, view.to_eye(), wanted, false});
+    }
     const auto store_lit = [&](Value color, Float diffuse, Float specular) {
       const Float lit = multiply_add(absorbed, specular, hn::Mul(value(color), diffuse));
       hn::StoreU(lit, kFloat, waiting_values_[color] + first);
@@ -113,14 +128,6 @@ class LitSteps {
     store_lit(kRed, light.diffuse.x, light.specular.x);
     store_lit(kGreen, light.diffuse.y, light.specular.y);
     store_lit(kBlue, light.diffuse.z, light.specular.z);
-  }
-
-  /// Where steps are seen, from 0 in front to 1 behind.
-  HWY_INLINE Float find_center(Float front, Float back, Float opacity) const {
-    if constexpr (requires { integrator_.find_center(front, back); })
-      return integrator_.find_center(front, back);
-    else
-      return find_emission(effects_.centroid, {front, back, constant(0.0f)}, opacity).center;
   }
 
   /// Stored scalars a value's distance.

@@ -121,8 +121,11 @@ class PacketMarcher {
       rays.index[lane] = (row + ray / kColumns) * kTileSize + column + ray % kColumns;
     }
     const Int index = hn::Load(kInt, rays.index);
-    if constexpr (kIsLit)
+    if constexpr (kIsLit) {
       rays.course.view = view_of(*job_.grid, pixels_of_tile(*job_.grid, job_.column, job_.row, index));
+      const Triple direction = rays.course.view.direction();
+      rays.course.per_square = hn::Div(constant(1.0f), dot(direction, direction));
+    }
     const auto gather = [&](const float* from) { return hn::GatherIndex(kFloat, from, index); };
     const Float never = constant(kNever);
     rays.enter = gather(tile.z_near);

@@ -103,27 +103,31 @@ class ValueSampler {
   /// as in its outermost cell, which makes differences one-sided there.
   HWY_NOINLINE Triple eval_central_differences(const Float at[3]) const {
     const Cell cell = find_cell(at);
-    const Float x = cell.t[0], y = cell.t[1], z = cell.t[2];
-    const Rows rows = load_rows(cell);
-    const auto across = [&](const Record& row) {  // twice the difference along x
-      return mix(x, hn::Sub(row.z, row.x), hn::Sub(row.w, row.y));
-    };
-    const auto inside = [&](const Record& row) { return mix(x, row.y, row.z); };
-    const Float near_low = inside(rows.near_low), far_low = inside(rows.far_low);
-    const Float near_high = inside(rows.near_high), far_high = inside(rows.far_high);
+    Mask is_inner = hn::FirstN(kFloat, kLanes);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Mask has_before = hn::Gt(cell.index[axis], constant(0.0f));
+      is_inner = hn::And(is_inner, hn::And(has_before, hn::Lt(cell.index[axis], last_cell_[axis])));
+    }
+    const Vicinity v = HWY_LIKELY(hn::AllTrue(kFloat, is_inner)) ? load_vicinity(cell) : load_border(cell);
 
-    const Neighbours by_y = find_neighbours(cell, 1), by_z = find_neighbours(cell, 2);
-    const auto pair = [&](Pair values) { return mix(x, values.first, values.second); };
-    const Float low_y = by_y.difference(y, pair(load_pair<false>(values_, by_y.before)), near_low, far_low,
-                                        pair(load_pair<false>(values_ + row_, by_y.after)));
-    const Float high_y = by_y.difference(y, pair(load_pair<true>(values_ + slice_, by_y.before)), near_high, far_high,
-                                         pair(load_pair<true>(values_ + slice_ + row_, by_y.after)));
-    const Record below = load_lower(by_z.before), above = load_upper(by_z.after);
-    const Float near_z = by_z.difference(z, mix(x, below.x, below.y), near_low, near_high, mix(x, above.x, above.y));
-    const Float far_z = by_z.difference(z, mix(x, below.z, below.w), far_low, far_high, mix(x, above.z, above.w));
-    const Float x_low = mix(y, across(rows.near_low), across(rows.far_low));
-    const Float x_high = mix(y, across(rows.near_high), across(rows.far_high));
-    return scaled({mix(z, x_low, x_high), mix(z, low_y, high_y), mix(y, near_z, far_z)},
+    const Float x = cell.t[0], y = cell.t[1], z = cell.t[2];
+    const auto inside = [&](const Record& row) { return mix(x, row.y, row.z); };
+    const auto beside = [&](const Pair& pair) { return mix(x, pair.first, pair.second); };
+    // Twice the difference between the middle ones of four values in a row.
+    const auto across = [](Float t, Float a, Float b, Float c, Float d) {
+      return mix(t, hn::Sub(c, a), hn::Sub(d, b));
+    };
+    const auto along_x = [&](const Record& row) { return across(x, row.x, row.y, row.z, row.w); };
+    const Float near_low = inside(v.near_low), far_low = inside(v.far_low);
+    const Float near_high = inside(v.near_high), far_high = inside(v.far_high);
+
+    const Float x_low = mix(y, along_x(v.near_low), along_x(v.far_low));
+    const Float x_high = mix(y, along_x(v.near_high), along_x(v.far_high));
+    const Float y_low = across(y, beside(v.before_low), near_low, far_low, beside(v.after_low));
+    const Float y_high = across(y, beside(v.before_high), near_high, far_high, beside(v.after_high));
+    const Float z_near = across(z, beside(v.near_below), near_low, near_high, beside(v.near_above));
+    const Float z_far = across(z, beside(v.far_below), far_low, far_high, beside(v.far_above));
+    return scaled({mix(z, x_low, x_high), mix(z, y_low, y_high), mix(y, z_near, z_far)},
                   hn::Mul(constant(0.5f), inverse_scale_));
   }
 
@@ -152,21 +156,47 @@ class ValueSampler {
     return cell;
   }
 
+  /// A cell and what is around it, but for edges and corners: `near` and `far` by y, `low` and `high` by z.
+  struct Vicinity {
+    Record near_low, far_low, near_high, far_high;  // each from one before the cell along x to one after it
+    Pair before_low, after_low, before_high, after_high;
+    Pair near_below, far_below, near_above, far_above;
+  };
+  /// Of cells that are neither first nor last along an axis.
+  HWY_INLINE Vicinity load_vicinity(const Cell& cell) const {
+    const PairOffsets here(cell.first);
+    const std::byte *before = values_ - row_, *far = values_ + row_, *after = far + row_;
+    return {load_quad(values_ - sizeof(T), here),
+            load_quad(far - sizeof(T), here),
+            load_quad(values_ + slice_ - sizeof(T), here),
+            load_quad(far + slice_ - sizeof(T), here),
+            load_pair<false>(before, here),
+            load_pair<false>(after, here),
+            load_pair<true>(before + slice_, here),
+            load_pair<true>(after + slice_, here),
+            load_pair<false>(values_ - slice_, here),
+            load_pair<false>(far - slice_, here),
+            load_pair<true>(values_ + 2 * slice_, here),
+            load_pair<true>(far + 2 * slice_, here)};
+  }
+
   /// Cells one before and one after along an axis; at the border of the grid the cell itself.
   struct Neighbours {
     Mask is_first, is_last;
     PairOffsets before, after;
 
-    /// What goes before two values in a row, and after them.
+    /// What goes before two values in a row, and after them; a, d: what is there but for the border.
     HWY_INLINE Float value_before(Float a, Float b, Float c) const {
       return hn::IfThenElse(is_first, hn::Sub(hn::Add(b, b), c), a);
     }
     HWY_INLINE Float value_after(Float b, Float c, Float d) const {
       return hn::IfThenElse(is_last, hn::Sub(hn::Add(c, c), b), d);
     }
-    /// Twice the central difference between the middle ones of four values in a row.
-    HWY_INLINE Float difference(Float t, Float a, Float b, Float c, Float d) const {
-      return mix(t, hn::Sub(c, value_before(a, b, c)), hn::Sub(value_after(b, c, d), b));
+    HWY_INLINE Pair pair_before(const Pair& a, const Pair& b, const Pair& c) const {
+      return {value_before(a.first, b.first, c.first), value_before(a.second, b.second, c.second)};
+    }
+    HWY_INLINE Pair pair_after(const Pair& b, const Pair& c, const Pair& d) const {
+      return {value_after(b.first, c.first, d.first), value_after(b.second, c.second, d.second)};
     }
   };
   HWY_INLINE Neighbours find_neighbours(const Cell& cell, int axis) const {
@@ -176,28 +206,32 @@ class ValueSampler {
     const Uint after = hn::IfThenZeroElse(uint_mask(is_last), bytes_[axis]);
     return {is_first, is_last, PairOffsets(hn::Sub(cell.first, before)), PairOffsets(hn::Add(cell.first, after))};
   }
-
-  /// The four rows along x through the corners of a cell, each with the value before and the value after.
-  struct Rows {
-    Record near_low, far_low, near_high, far_high;  // by y and z
-  };
-  HWY_INLINE Rows load_rows(const Cell& cell) const {
+  /// Of any cells.
+  HWY_NOINLINE Vicinity load_border(const Cell& cell) const {
     const PairOffsets here(cell.first);
-    const Mask is_inner = hn::And(hn::Gt(cell.index[0], constant(0.0f)), hn::Lt(cell.index[0], last_cell_[0]));
-    if (HWY_LIKELY(hn::AllTrue(kFloat, is_inner))) {
-      const std::byte* from = values_ - sizeof(T);
-      return {load_quad(from, here), load_quad(from + row_, here), load_quad(from + slice_, here),
-              load_quad(from + slice_ + row_, here)};
-    }
-    const Neighbours by_x = find_neighbours(cell, 0);
+    const Neighbours by_x = find_neighbours(cell, 0), by_y = find_neighbours(cell, 1), by_z = find_neighbours(cell, 2);
     const Record low = load_lower(here), high = load_upper(here);
+    const Pair near_low{low.x, low.y}, far_low{low.z, low.w}, near_high{high.x, high.y}, far_high{high.z, high.w};
     const Record low_before = load_lower(by_x.before), low_after = load_lower(by_x.after);
     const Record high_before = load_upper(by_x.before), high_after = load_upper(by_x.after);
-    const auto row = [&](Float a, Float b, Float c, Float d) {
-      return Record{by_x.value_before(a, b, c), b, c, by_x.value_after(b, c, d)};
+    const auto row = [&](Float a, const Pair& pair, Float d) {
+      return Record{by_x.value_before(a, pair.first, pair.second), pair.first, pair.second,
+                    by_x.value_after(pair.first, pair.second, d)};
     };
-    return {row(low_before.x, low.x, low.y, low_after.y), row(low_before.z, low.z, low.w, low_after.w),
-            row(high_before.x, high.x, high.y, high_after.y), row(high_before.z, high.z, high.w, high_after.w)};
+    const Record below = load_lower(by_z.before), above = load_upper(by_z.after);
+    const std::byte* upper = values_ + slice_;
+    return {row(low_before.x, near_low, low_after.y),
+            row(low_before.z, far_low, low_after.w),
+            row(high_before.x, near_high, high_after.y),
+            row(high_before.z, far_high, high_after.w),
+            by_y.pair_before(load_pair<false>(values_, by_y.before), near_low, far_low),
+            by_y.pair_after(near_low, far_low, load_pair<false>(values_ + row_, by_y.after)),
+            by_y.pair_before(load_pair<true>(upper, by_y.before), near_high, far_high),
+            by_y.pair_after(near_high, far_high, load_pair<true>(upper + row_, by_y.after)),
+            by_z.pair_before({below.x, below.y}, near_low, near_high),
+            by_z.pair_before({below.z, below.w}, far_low, far_high),
+            by_z.pair_after(near_low, near_high, {above.x, above.y}),
+            by_z.pair_after(far_low, far_high, {above.z, above.w})};
   }
 
   /// The corners of a cell in its lower and in its upper slice.
