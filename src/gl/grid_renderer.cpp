@@ -91,8 +91,8 @@ class GridRenderer final : public scene::FrameRenderer {
              RenderStatistics& statistics);
   FilteredBricks filtered_bricks(const scene::PlanSources& sources, const RenderSettings& settings) const;
   MarchKind kind_of(const RenderSettings& settings) const;
-  /// Whether the device is to interpolate values: floats, where rays look slabs up, which rounds scalars anyway. Software
-  /// rounds filtered integers to whole numbers.
+  /// Whether the device is to interpolate values: floats, where rays look slabs up, which rounds scalars anyway.
+  /// Software rounds filtered integers to whole numbers.
   bool wants_filter(const MarchKind& kind, const RenderSettings& settings) const {
     return kind.has_runs && device_->values.has_floats() && scene::may_look_slabs_up(grid_, steepness_, settings);
   }
