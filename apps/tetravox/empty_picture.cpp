@@ -59,6 +59,15 @@ std::string explain_transparent(const PictureContext& context) {
          "larger extinctions";
 }
 
+/// Values of iso-surfaces that the data do not have; empty where they have all.
+std::string list_missing_surfaces(const Scene& scene, const ValueRange& range) {
+  std::string list;
+  for (const Isosurface& surface : scene.settings.surfaces)
+    if (!(surface.value >= range.min && surface.value <= range.max))
+      list += (list.empty() ? "" : ", ") + format_number(surface.value);
+  return list;
+}
+
 /// Names of other arrays, to try instead of a constant one.
 std::string other_arrays(const DatasetInfo& info, const std::string& name) {
   std::string list;
@@ -80,7 +89,11 @@ std::vector<std::string> explain_picture(const Image& image, const PictureContex
                     (others.empty() ? "" : "; others to draw with --array: " + others));
   }
   const Visibility visibility = measure_visibility(image, context.scene.background);
-  if (visibility.alpha < kVisible)
+  const std::string missing = list_missing_surfaces(context.scene, range);
+  if (!missing.empty())
+    lines.push_back(std::string(visibility.alpha < kVisible ? "the picture is empty: " : "") +
+                    "there is no iso-surface at " + missing + ", outside the data's range " + format_range(range));
+  else if (visibility.alpha < kVisible)
     lines.push_back(explain_transparent(context));
   else if (visibility.contrast < kVisible)
     lines.push_back("the picture shows only its background's colour; give another --background or --transfer-function");

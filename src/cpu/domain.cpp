@@ -135,7 +135,7 @@ void require_domain_settings(const Domain& domain, const RenderSettings& setting
     fail(what + " is integrated along each segment: integrator '" + name_of(settings.integrator) +
          "' does not go with it, leave it out");
   if (settings.samples_per_voxel > 0.0)
-    fail(what + " follows the cells, not a fixed rate: leave out the samples per voxel");
+    fail(what + " follows the cells, not a fixed rate: draw without one (--samples-per-voxel auto)");
   if (domain.is_table() && settings.lighting.shadows == ShadowKind::kExact && !settings.lighting.lights.empty())
     fail("exact shadows follow functions of one variable: choose shadows 'volume'");
 }

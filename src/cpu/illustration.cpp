@@ -244,7 +244,7 @@ void require_effects(const RenderSettings& settings, bool has_constant_cells) {
 void require_rate_effects(const PreparedGrid& grid, const RenderSettings& settings) {
   if (settings.samples_per_voxel == 0.0) return;
   const auto fail = [](const std::string& message) {
-    throw Error(ErrorCode::kUnsupported, message + ": set the samples per voxel to 0 (--samples-per-voxel auto)");
+    throw Error(ErrorCode::kUnsupported, message + ": draw without one (--samples-per-voxel auto)");
   };
   if (wants_more_than_light(settings)) fail("iso-surfaces, weights and depth follow the cells, not a fixed rate");
   const std::string obstacle = scene::find_obstacle_to_counting(grid, settings);

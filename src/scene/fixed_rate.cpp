@@ -44,7 +44,7 @@ bool is_read_in_place(ScalarType type) {
 std::string find_obstacle_to_counting(const PreparedGrid& grid, const RenderSettings& settings) {
   const GridData& data = grid.data;
   const auto& points = data.shape.dimensions;
-  if (!is_exact(settings.integrator)) return "the integrator 'antiderivative' or 'partial'";
+  if (!is_exact(settings.integrator)) return "pre-integration (the integrator 'antiderivative' or 'partial')";
   if (settings.filter.kind != FilterKind::kLinear) return "the filter 'linear'";
   if (!has_even_axes(grid)) return "a grid with even axes";
   if (grid.missing_values != 0) return "a grid without missing values";

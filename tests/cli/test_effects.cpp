@@ -291,6 +291,13 @@ TEST_F(Effects, SurfacesAloneAreKept) {
   EXPECT_NE(draw("c.npy", {"s.json", "--lights", "none"}), first);
 }
 
+TEST_F(Effects, SurfacesOutsideTheRangeAreNamed) {
+  const Result with_volume = run({"render", "builtin:sphere", "--isosurface", "7", "-o", "a.png"});
+  EXPECT_NE(with_volume.err.find("there is no iso-surface at 7"), std::string::npos) << with_volume.err;
+  const Result alone = run({"render", "builtin:sphere", "--isosurface", "7", "--volume", "off", "-o", "b.png"});
+  EXPECT_NE(alone.err.find("the picture is empty: there is no iso-surface at 7"), std::string::npos) << alone.err;
+}
+
 TEST_F(Effects, APictureAtAFixedRateIsLitAtItAndWithoutIt) {
   draw("fast.png", {"builtin:hydrogen", "--samples-per-voxel", "1"});
   EXPECT_NE(draw("fast-lit.npy", {"fast.png", "--shade"}), draw("fast.npy", {"fast.png"}));
