@@ -23,7 +23,16 @@ bool looks_along_up(const Camera& camera) {
 
 }  // namespace
 
-Camera override_camera(const CameraOptions& options, Camera camera) {
+std::optional<Vector3> find_middle(const Scene& scene, const Body& body) {
+  if (scene.camera) return {};
+  const auto bounds = bounds_of(body);
+  Vector3 middle{};
+  for (std::size_t i = 0; i < 3; ++i) middle[i] = 0.5 * bounds[i].min + 0.5 * bounds[i].max;
+  return middle;
+}
+
+Camera override_camera(const CameraOptions& options, Camera camera, const std::optional<Vector3>& middle) {
+  if (options.position && middle) camera.focal_point = *middle;
   camera.position = options.position.value_or(camera.position);
   camera.focal_point = options.focal_point.value_or(camera.focal_point);
   camera.view_up = options.view_up.value_or(camera.view_up);

@@ -69,7 +69,8 @@ std::pair<PreparedMesh, Camera> load_mesh(const OrderCommandOptions& options, Or
   throw_if_interrupted();
   statistics.prepare_seconds = seconds_since(last);
   const Camera camera = override_camera(
-      options.camera, input.scene.camera ? *input.scene.camera : complete_scene(input.scene, body).camera);
+      options.camera, input.scene.camera ? *input.scene.camera : complete_scene(input.scene, body).camera,
+      find_middle(input.scene, body));
   line.clear();
   return {std::move(std::get<PreparedMesh>(body)), camera};
 }

@@ -170,7 +170,7 @@ void complete_job(const RenderOptions& options, Job& job) {
   if (!job.table) choose_function(options.function, job.body, scene);
   job.colors = choose_colors(options.multidimensional, job.body, scene);
   job.completed = complete_scene(scene, job.body);
-  job.completed.camera = override_camera(options.camera, job.completed.camera);
+  job.completed.camera = override_camera(options.camera, job.completed.camera, find_middle(scene, job.body));
   complete_effects(options.effects, job.completed, scene);
   if (!scene.multidimensional) scene.transfer_function = job.completed.transfer_function;
   scene.camera = job.completed.camera;

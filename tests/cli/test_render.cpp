@@ -133,6 +133,9 @@ TEST_F(Render, OptionsChangeThePicture) {
 
 TEST_F(Render, SeenFromStraightAboveYIsUp) {
   const std::vector<std::string> above{"builtin:duct", "--camera-position", "0,0,9", "--camera-focal-point", "0,0,0"};
+  EXPECT_EQ(draw({"builtin:sphere", "--camera-position", "0,0,5"}),
+            draw({"builtin:sphere", "--camera-position", "0,0,5", "--camera-focal-point", "0,0,0", "--camera-view-up",
+                  "0,1,0"}));
   std::vector<std::string> as_map = above;
   as_map.insert(as_map.end(), {"--camera-view-up", "0,1,0"});
   EXPECT_EQ(draw(above), draw(as_map));
