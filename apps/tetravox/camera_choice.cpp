@@ -3,25 +3,6 @@
 #include <cstddef>
 
 namespace tetravox::tool {
-namespace {
-
-/// Whether the line of sight is that of `view_up`, near enough for `validate_camera` to refuse it.
-bool looks_along_up(const Camera& camera) {
-  const Vector3& up = camera.view_up;
-  Vector3 forward{};
-  for (std::size_t i = 0; i < 3; ++i) forward[i] = camera.focal_point[i] - camera.position[i];
-  double across = 0.0, forward_square = 0.0, up_square = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    const double component = forward[j] * up[k] - forward[k] * up[j];
-    across += component * component;
-    forward_square += forward[i] * forward[i];
-    up_square += up[i] * up[i];
-  }
-  return across <= 1e-17 * forward_square * up_square;
-}
-
-}  // namespace
 
 std::optional<Vector3> find_middle(const Scene& scene, const Body& body) {
   if (scene.camera) return {};

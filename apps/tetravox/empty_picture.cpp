@@ -48,7 +48,12 @@ std::string explain_transparent(const PictureContext& context) {
            format_bounds(bounds_of(context.body)) +
            "); choose other widgets, another table or wider ranges, or leave them out for a function from the data";
   const ValueRange range = scalar_range_of(context.body);
-  if (largest_extinction(context.completed.optical_function, range) <= 0.0)
+  const bool is_volume_seen = largest_extinction(context.completed.optical_function, range) > 0.0;
+  if (!is_volume_seen && !context.scene.settings.surfaces.empty())
+    return "the picture is empty: of its iso-surfaces none is seen, and the volume is off or transparent; give an "
+           "--isosurface within " +
+           format_range(range) + ", or --volume on";
+  if (!is_volume_seen)
     return "the picture is empty: the transfer function is transparent over the data's range " + format_range(range) +
            "; give --range " + format_number(range.min) + "," + format_number(range.max) +
            " or another --transfer-function";
@@ -59,8 +64,8 @@ std::string explain_transparent(const PictureContext& context) {
          "larger extinctions";
 }
 
-/// Values of iso-surfaces that the data do not have; empty where they have all.
-std::string list_missing_surfaces(const Scene& scene, const ValueRange& range) {
+/// Values of iso-surfaces beyond the data; empty where there are none.
+std::string list_surfaces_outside(const Scene& scene, const ValueRange& range) {
   std::string list;
   for (const Isosurface& surface : scene.settings.surfaces)
     if (!(surface.value >= range.min && surface.value <= range.max))
@@ -89,11 +94,10 @@ std::vector<std::string> explain_picture(const Image& image, const PictureContex
                     (others.empty() ? "" : "; others to draw with --array: " + others));
   }
   const Visibility visibility = measure_visibility(image, context.scene.background);
-  const std::string missing = list_missing_surfaces(context.scene, range);
-  if (!missing.empty())
-    lines.push_back(std::string(visibility.alpha < kVisible ? "the picture is empty: " : "") +
-                    "there is no iso-surface at " + missing + ", outside the data's range " + format_range(range));
-  else if (visibility.alpha < kVisible)
+  const std::string outside = list_surfaces_outside(context.scene, range);
+  if (!outside.empty())
+    lines.push_back("iso-surfaces outside the data's range " + format_range(range) + ": " + outside);
+  if (visibility.alpha < kVisible)
     lines.push_back(explain_transparent(context));
   else if (visibility.contrast < kVisible)
     lines.push_back("the picture shows only its background's colour; give another --background or --transfer-function");

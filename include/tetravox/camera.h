@@ -19,6 +19,9 @@ struct Camera {
   std::optional<double> parallel_scale;  ///< orthographic: half the height of the picture, world units
 };
 
+/// Whether the line of sight is that of `view_up`, so that nothing is up in the picture.
+bool looks_along_up(const Camera& camera);
+
 /// @throws Error (kInvalidArgument) where the camera defines no view: names the member.
 void validate_camera(const Camera& camera);
 

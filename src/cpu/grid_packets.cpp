@@ -33,8 +33,8 @@ MarchValues describe_values(const PreparedGrid& grid) {
 
 const optics::SlabTable& SlabCache::prepare(const ValueRange& range, const IntegratorTables& tables,
                                             const Kernels& kernels, float thickness, bool wants_centers) {
-  const bool has_centers = !wants_centers || !table_.centers.empty();
-  if (thickness == thickness_ && tables.tolerance == tolerance_ && has_centers) return table_;
+  const bool lacks_centers = wants_centers && table_.centers.empty();
+  if (thickness == thickness_ && tables.tolerance == tolerance_ && !lacks_centers) return table_;
   constexpr int kNodes = optics::SlabTable::kNodes;
   const auto width = static_cast<float>(optics::SlabTable::node_width(range));
   table_.first = static_cast<float>(range.min);

@@ -1,5 +1,6 @@
 #include "src/scene/brick_plan.h"
 
+#include "src/scene/fixed_rate.h"
 #include "src/scene/preintegration_cache.h"
 #include "src/support/threads.h"
 
@@ -165,11 +166,6 @@ class Planner {
 bool has_even_axes(const PreparedGrid& grid) {
   const auto& axes = grid.data.shape.coordinates;
   return std::all_of(axes.begin(), axes.end(), [](const std::vector<double>& axis) { return axis.empty(); });
-}
-
-bool restarts_rate(const PreparedGrid& grid, Integrator integrator) {
-  const bool is_exact = integrator == Integrator::kAntiderivative || integrator == Integrator::kPartial;
-  return is_exact && has_even_axes(grid) && grid.missing_values == 0;
 }
 
 float allowed_rate_of(double tolerance, double diagonal) {

@@ -55,11 +55,8 @@ struct PlanSources {
   const BrickGroups* groups = nullptr;
 };
 
+/// Whether values are equally far apart along each axis.
 bool has_even_axes(const PreparedGrid& grid);
-
-/// Whether steps of a fixed rate may start anew in each brick, where it hardly matters where samples lie: exactly
-/// integrated ones on even axes, with nothing missing. Elsewhere samples are counted on from cell to cell.
-bool restarts_rate(const PreparedGrid& grid, Integrator integrator);
 
 /// Error in colour for one unit of world length that segments may have.
 float allowed_rate_of(double tolerance, double diagonal);

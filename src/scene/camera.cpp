@@ -50,6 +50,11 @@ Vector3 default_direction(const Vector3& size) {
 
 }  // namespace
 
+bool looks_along_up(const Camera& camera) {
+  const Vector3 forward = camera.focal_point - camera.position;
+  return length(cross(normalize(forward), normalize(camera.view_up))) < 1e-9;
+}
+
 void validate_camera(const Camera& camera) {
   if (!is_finite(camera.position)) fail("camera position: not a finite point");
   if (!is_finite(camera.focal_point)) fail("camera focal_point: not a finite point");
@@ -59,7 +64,7 @@ void validate_camera(const Camera& camera) {
     fail("camera position and focal_point are the same, or too far apart; move one of them");
   if (!(length(camera.view_up) > 0.0) || !std::isfinite(length(camera.view_up)))
     fail("camera view_up has no length; give a direction, for example 0,0,1");
-  if (length(cross(normalize(forward), normalize(camera.view_up))) < 1e-9)
+  if (looks_along_up(camera))
     fail("camera view_up is parallel to the line of sight: choose another direction (--camera-view-up)");
   if (camera.parallel_scale) {
     if (!std::isfinite(*camera.parallel_scale) || !(*camera.parallel_scale > 0.0))

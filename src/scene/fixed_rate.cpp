@@ -41,6 +41,10 @@ bool is_read_in_place(ScalarType type) {
 
 }  // namespace
 
+bool restarts_rate(const PreparedGrid& grid, Integrator integrator) {
+  return is_exact(integrator) && has_even_axes(grid) && grid.missing_values == 0;
+}
+
 std::string find_obstacle_to_counting(const PreparedGrid& grid, const RenderSettings& settings) {
   const GridData& data = grid.data;
   const auto& points = data.shape.dimensions;

@@ -27,8 +27,12 @@ bool counts_steps(const PreparedGrid& grid, const RenderSettings& settings);
 /// What that lacks, as a user is told: "a grid with even axes"; empty where nothing is lacking.
 std::string find_obstacle_to_counting(const PreparedGrid& grid, const RenderSettings& settings);
 
-/// Whether such steps may be looked up by scalars rounded to the nodes of optics::SlabTable. `steepness`: of the
-/// function.
+/// Whether steps of a fixed rate may start anew in each brick, where it hardly matters where samples lie: exactly
+/// integrated ones on even axes, with nothing missing. Elsewhere samples are counted on from cell to cell.
+bool restarts_rate(const PreparedGrid& grid, Integrator integrator);
+
+/// Whether steps that are counted may be looked up by scalars rounded to the nodes of optics::SlabTable. `steepness`:
+/// of the function.
 bool may_look_slabs_up(const PreparedGrid& grid, const optics::SteepnessTable& steepness,
                        const RenderSettings& settings);
 

@@ -227,7 +227,7 @@ struct PacketJob {
   const scene::RayGrid* grid = nullptr;  ///< with the tile's corner
   int column = 0, row = 0;
   bool has_central_gradients = true;  ///< else those of the trilinear field
-  float stored_per_scalar = 1.0f;     ///< stored scalars, of one of the integrator's
+  float stored_per_scalar = 1.0f;     ///< stored scalars in one of the integrator's
 };
 
 /// One row of a table of slabs.
